@@ -24,7 +24,6 @@ mod flights;
 pub mod formatting;
 mod frame_pace;
 mod ground_probe;
-mod keys;
 #[cfg(not(target_arch = "wasm32"))]
 mod loader_threads;
 mod map_canvas;
@@ -38,7 +37,6 @@ mod settings;
 mod settings_record;
 mod shown_view;
 mod style_list;
-mod tile_loader;
 mod tiles;
 mod trace;
 mod view_record;
@@ -49,25 +47,23 @@ pub use loader_threads::LoaderThreads;
 pub use {
     byte_ranges::{RangeCache, merged_ranges},
     camera_control::CameraControl,
-    commands::{Command, DrawingCommand, Shot},
+    commands::{Command, DrawingCommand, KEY_HELP, Shot},
     desk::{Errand, MapDesk},
     drawing::{ClockS, Drawing, DrawingContent, DrawingHandle, DrawnLine, SaveDrawing},
     first_tiles::{FirstLook, KnownTiles, foreseen, sighted_ground},
     flights::Flights,
     frame_pace::{FramePace, FrameTimes, Redraw},
     ground_probe::{GroundPoint, GroundProbe},
-    keys::KEY_HELP,
     map_canvas::{Counts, MapCanvas, MapScene, PixelReading, Timing},
     notices::{NotSaved, Notice, Notices},
     picked_road::{PickPlace, PickedRoad},
-    session::{HURRY_S, Session, SessionStart, SessionStep},
+    session::{Session, SessionStart, SessionStep},
     session_record::FrameRest,
     settings::{Compare, MapSettings, Refinement, Visibility, range},
     settings_record::{SettingChanges, SettingsRecord},
     shown_view::{CommandOf, ShownView},
     style_list::{NamedStyle, Reload, StyleList},
-    tile_loader::{Loaded, TileLoader},
-    tiles::{ShownGround, Tiles},
+    tiles::{Loaded, ShownGround, TileLoader, Tiles},
     trace::{Trace, TraceLine},
     view_record::ViewRecord,
     views::{MAX_PITCH_DEG, first_view},

@@ -29,13 +29,12 @@ use crate::{
     picked_road::PickPlace,
     settings::{MapSettings, Refinement},
     style_list::StyleList,
-    tile_loader::TileLoader,
-    tiles::{Changes, ShownGround, Tiles},
+    tiles::{Changes, ShownGround, TileLoader, Tiles},
     views::{limits, place_in_world, request_of_view, view_on},
 };
 
 /// A processor that draws draws coarsely until the camera has been at rest for this time.
-pub const HURRY_S: f64 = 0.15;
+pub(crate) const HURRY_S: f64 = 0.15;
 /// A road is picked at most so far beside it, points of the screen.
 const PICK_POINTS: f64 = 6.0;
 
@@ -192,7 +191,7 @@ impl Session {
         if changed.exaggeration.to_bits() != self.settings.exaggeration.to_bits() {
             let factor = changed.exaggeration / self.settings.exaggeration;
             let ground = self.package.ground(&self.tiles, &self.settings);
-            self.camera.rescale_heights(factor, &ground);
+            self.camera.navigator.rescale_heights(factor, &ground);
         }
         self.settings = changed;
     }
@@ -264,7 +263,7 @@ impl Session {
     ) -> Result<(), OffGround> {
         let view = self.view_at(request, size_px)?;
         self.placed = None;
-        self.camera.travel_to(view, now_s);
+        self.camera.navigator.travel_to(view, now_s);
         Ok(())
     }
 
@@ -274,7 +273,7 @@ impl Session {
     /// When the place has no ground, and no height is given.
     pub fn jump_to(&mut self, request: CameraRequest, size_px: [u32; 2]) -> Result<(), OffGround> {
         let view = self.view_at(request, size_px)?;
-        self.camera.jump_to(view);
+        self.camera.navigator.jump_to(view);
         self.placed = Some((request, self.camera.view()));
         Ok(())
     }
@@ -304,7 +303,7 @@ impl Session {
         if let Ok(again) = self.view_at(request, size_px)
             && again != view
         {
-            self.camera.jump_to(again);
+            self.camera.navigator.jump_to(again);
         }
         self.placed = Some((request, self.camera.view()));
     }
@@ -355,7 +354,7 @@ impl Session {
         let scale = self.vertical_scale();
         let ground = self.package.ground(&self.tiles, &self.settings);
         if let Some(view) = self.flights.view(now_s, scale, &ground) {
-            self.camera.jump_to(view);
+            self.camera.navigator.jump_to(view);
         }
         self.place_again(size_px);
         let ground = self.package.ground(&self.tiles, &self.settings);

@@ -66,7 +66,7 @@ impl Session {
         let metres_per_pixel = probe.middle_pixel_m().map(|pixel_m| pixel_m / point_scale);
         let is_playing = flights.is_playing();
         // A recording needs frames only while something moves.
-        let is_busy = camera.is_moving() || is_playing || rest.is_busy;
+        let is_busy = camera.navigator.is_moving() || is_playing || rest.is_busy;
         let has_all = missing == 0 || is_full || rest.troubled > 0;
         let is_settled = !is_busy && has_all && loading == rest.troubled;
         let share_there = drawn as f64 / (drawn + missing).max(1) as f64;
@@ -77,7 +77,7 @@ impl Session {
             "cursor": cursor,
             "metres_per_pixel": metres_per_pixel,
             "metres_per_point": metres_per_pixel.map(|pixel_m| pixel_m * pixels_per_point),
-            "mode": if camera.mode() == Mode::Fly { "fly" } else { "map" },
+            "mode": if camera.navigator.mode() == Mode::Fly { "fly" } else { "map" },
             "tiles": { "drawn": drawn, "missing": missing, "loading": loading, "full": is_full },
             "triangles": counts.triangles,
             "segments": counts.segments,

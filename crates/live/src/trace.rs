@@ -51,7 +51,7 @@ impl TraceLine {
             tiles: tiles.drawn().len(),
             missing: tiles.missing(),
             loading: tiles.loading(),
-            is_moving: camera.is_moving(),
+            is_moving: camera.navigator.is_moving(),
             size_px,
         }
     }

@@ -70,7 +70,7 @@ impl Map {
         let reading = Reading::of(&shown.decoder(&style));
         self.session.change(shown);
         self.session.styles = style_list(&changed.style, style);
-        self.session.camera.set_inertia(changed.inertia());
+        self.session.camera.navigator.set_inertia(changed.inertia());
         if self.loader.read_otherwise(reading) {
             self.session.begin_again();
             self.canvas.map.clear();

@@ -144,7 +144,7 @@ impl MapView {
             return false;
         }
         let Some(key) = key_of(code) else { return false };
-        let is_map_mode = self.0.session.camera.mode() == Mode::Map;
+        let is_map_mode = self.0.session.camera.navigator.mode() == Mode::Map;
         if control || (key.is_for_flying() && is_map_mode) {
             return false;
         }

@@ -81,7 +81,8 @@ impl App {
         }
 
         let camera = &self.desk.session.camera;
-        let is_busy = camera.is_moving() || step.is_under_way || self.captures.is_wanted();
+        let is_busy =
+            camera.navigator.is_moving() || step.is_under_way || self.captures.is_wanted();
         let is_one_of_many = drew.is_new && (is_busy || camera.is_dragging());
         self.desk.pace.note(now_s, is_one_of_many, is_busy);
         let redraw = self.next_redraw(canvas, now_s, is_busy || is_changed, &output);
@@ -160,7 +161,7 @@ impl App {
             cursor: session.probe.cursor().filter(|_| is_over_map),
             pose: session.pose(),
             metres_per_point: session.probe.middle_pixel_m().map(|pixel_m| pixel_m * points),
-            mode: session.camera.mode(),
+            mode: session.camera.navigator.mode(),
             style_names: session.styles.names(),
             has: Has { areas: manifest.areas.is_some(), boundaries: manifest.boundaries.is_some() },
             overlays: &self.desk.overlays,
