@@ -1,4 +1,5 @@
-//! Ranges of bytes of a file on a web server: those that were read are kept, and those that lie near each other are fetched as one.
+//! Ranges of bytes of a file on a web server: those that were read are kept, and those that lie
+//! near each other are fetched as one.
 
 use std::{collections::BTreeMap, rc::Rc};
 
@@ -71,7 +72,8 @@ impl RangeCache {
         found
     }
 
-    /// Keeps bytes that were read, and drops those that were used longest ago where there are too many.
+    /// Keeps bytes that were read, and drops those that were used longest ago where there are too
+    /// many.
     pub fn put(&mut self, offset: u64, bytes: Rc<[u8]>) {
         self.clock += 1;
         self.bytes += bytes.len();

@@ -1,5 +1,5 @@
-//! What a person asks for with a key or a button, besides other settings, and what keys mean, by the names that browsers and window
-//! systems give them.
+//! What a person asks for with a key or a button, besides other settings, and what keys mean, by
+//! the names that browsers and window systems give them.
 
 use crate::controls::{Key, Modifiers};
 
@@ -99,7 +99,8 @@ pub const KEY_HELP: [(&str, &str); 24] = [
 ];
 
 impl Key {
-    /// The key with this code, as the W3C names the places of keys: arrows and the keys of fly mode.
+    /// The key with this code, as the W3C names the places of keys: arrows and the keys of fly
+    /// mode.
     #[must_use]
     pub fn of_code(code: &str) -> Option<Self> {
         Some(match code {
@@ -117,8 +118,8 @@ impl Key {
         })
     }
 
-    /// The key by what is printed on it, and else by its code: arrows, + and − are told by their signs, the keys of fly mode by their position
-    /// on the keyboard.
+    /// The key by what is printed on it, and else by its code: arrows, + and − are told by their
+    /// signs, the keys of fly mode by their position on the keyboard.
     #[must_use]
     pub fn of(sign: &str, code: &str) -> Option<Self> {
         match sign {
@@ -145,7 +146,8 @@ impl Key {
 }
 
 impl DrawingCommand {
-    /// What a key does to drawn lines, by what is printed on it. With Control, keys of fly mode are these.
+    /// What a key does to drawn lines, by what is printed on it. With Control, keys of fly mode are
+    /// these.
     #[must_use]
     pub fn of_key(sign: &str, modifiers: Modifiers, is_drawing: bool) -> Option<Self> {
         let Modifiers { shift, control } = modifiers;

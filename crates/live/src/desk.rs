@@ -173,7 +173,8 @@ impl MapDesk {
         self.notices.warn("the graphics device was lost; everything was loaded again".to_owned());
     }
 
-    /// Does the step of a frame, lays drawn lines on the tiles that have come, and tells what went wrong.
+    /// Does the step of a frame, lays drawn lines on the tiles that have come, and tells what went
+    /// wrong.
     pub fn step(
         &mut self,
         canvas: &mut MapCanvas,
@@ -198,8 +199,9 @@ impl MapDesk {
         step
     }
 
-    /// What is drawn in a window of this size. Where the picture is too large for the adapter with so many samples, there are fewer from now
-    /// on. `is_in_full` says that it is drawn in full also where a processor draws and the camera moves.
+    /// What is drawn in a window of this size. Where the picture is too large for the adapter with
+    /// so many samples, there are fewer from now on. `is_in_full` says that it is drawn in full
+    /// also where a processor draws and the camera moves.
     pub fn scene(
         &mut self,
         canvas: &MapCanvas,
@@ -241,7 +243,8 @@ impl MapDesk {
         Ok(())
     }
 
-    /// When the next frame is due that the desk itself asks for, or whoever shows it: after the shortest of these times.
+    /// When the next frame is due that the desk itself asks for, or whoever shows it: after the
+    /// shortest of these times.
     #[must_use]
     pub fn next_redraw(
         &self,

@@ -1,4 +1,5 @@
-//! Lines and areas that a person draws on the ground: what mouse and keys do to them, and how they come onto the tiles.
+//! Lines and areas that a person draws on the ground: what mouse and keys do to them, and how they
+//! come onto the tiles.
 //!
 //! ```text
 //!  mouse, keys ──► Tool ──► Document (lines, undo, redo) ──► LaidLines ──► layers of the tiles that are shown
@@ -102,7 +103,8 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// The drawing with the lines of a file. A notice tells how many have a point without a place in the package's CRS: they are not shown.
+    /// The drawing with the lines of a file. A notice tells how many have a point without a place
+    /// in the package's CRS: they are not shown.
     pub fn new(
         lines: &[DrawnLine],
         (save, clock_s): (SaveDrawing, ClockS),
@@ -263,8 +265,9 @@ impl Drawing {
         }
     }
 
-    /// Tiles were evicted and uploaded: lays what has changed on those that are there now; `is_new` says that some of them were not
-    /// there before. A notice tells how many lines cannot be laid, when that has changed.
+    /// Tiles were evicted and uploaded: lays what has changed on those that are there now; `is_new`
+    /// says that some of them were not there before. A notice tells how many lines cannot be laid,
+    /// when that has changed.
     pub fn follow_tiles(
         &mut self,
         (evicted, is_new): (&[TileId], bool),

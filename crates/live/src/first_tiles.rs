@@ -1,4 +1,5 @@
-//! What must be known of a package's first tiles before there is a frame, and which tiles the first view will need.
+//! What must be known of a package's first tiles before there is a frame, and which tiles the first
+//! view will need.
 
 use std::{cell::RefCell, collections::BTreeMap};
 
@@ -13,7 +14,8 @@ use corniche_viewer::{
     },
 };
 
-/// The ground that the camera of a first view is set up by, but for the height at its place; `None` where there is no ground.
+/// The ground that the camera of a first view is set up by, but for the height at its place; `None`
+/// where there is no ground.
 ///
 /// # Errors
 /// When a tile cannot be read.
@@ -55,7 +57,8 @@ struct NotingTiles<'a> {
 }
 
 impl KnownTiles<'_> {
-    /// What is known of the ground for the first view. `place` is that of the camera, in the working CRS.
+    /// What is known of the ground for the first view. `place` is that of the camera, in the
+    /// working CRS.
     ///
     /// # Errors
     /// When a tile cannot be read.

@@ -1,4 +1,5 @@
-//! The next frame is due in time, pauses do not count as frame times, and the median is that of recent frames.
+//! The next frame is due in time, pauses do not count as frame times, and the median is that of
+//! recent frames.
 
 use super::*;
 

@@ -6,11 +6,13 @@
 //!                 └── ground, heights ──┘◄── TileLoader: threads, or the workers of a page
 //! ```
 //!
-//! The window and the page in a browser are two faces of one [`Session`]: it has the state of the map and does what people ask of it.
-//! [`controls`] move its camera, [`Tiles`] chooses what is loaded, kept and drawn, and is the ground under the cursor; a [`MapCanvas`] is
-//! what it has on the graphics card. Times are arguments.
+//! The window and the page in a browser are two faces of one [`Session`]: it has the state of the
+//! map and does what people ask of it. [`controls`] move its camera, [`Tiles`] chooses what is
+//! loaded, kept and drawn, and is the ground under the cursor; a [`MapCanvas`] is what it has on
+//! the graphics card. Times are arguments.
 //!
-//! This crate never draws but through `corniche-viewer`, never opens a file and knows neither window system nor browser.
+//! This crate never draws but through `corniche-viewer`, never opens a file and knows neither
+//! window system nor browser.
 
 mod byte_ranges;
 mod camera_control;

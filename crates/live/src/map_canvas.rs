@@ -1,4 +1,5 @@
-//! What a map shows, and what it has on the graphics card for that: tiles, and one picture or several.
+//! What a map shows, and what it has on the graphics card for that: tiles, and one picture or
+//! several.
 
 use std::{ops::Range, rc::Rc};
 
@@ -23,7 +24,8 @@ use crate::settings::Compare;
 pub struct MapScene {
     /// The camera; its size is that of the pictures.
     pub camera: Camera,
-    /// Width and height of what shows the map. Pictures are smaller while the map is drawn coarsely.
+    /// Width and height of what shows the map. Pictures are smaller while the map is drawn
+    /// coarsely.
     pub shown_px: [u32; 2],
     /// Colours and widths.
     pub style: Style,
@@ -47,7 +49,8 @@ pub struct MapScene {
     pub drawn: Vec<Drawn>,
     /// Samples per pixel along each side.
     pub samples_per_side: u32,
-    /// What else changes the picture when it changes: lines that a person draws, a divider that is part of the picture.
+    /// What else changes the picture when it changes: lines that a person draws, a divider that is
+    /// part of the picture.
     pub revision: u64,
 }
 
@@ -94,7 +97,8 @@ pub enum Timing {
     Off,
 }
 
-/// What a map has on the graphics card. When the device is lost, a new canvas takes the place of the old one.
+/// What a map has on the graphics card. When the device is lost, a new canvas takes the place of
+/// the old one.
 pub struct MapCanvas {
     gpu: Rc<Gpu>,
     timing: Timing,
@@ -155,7 +159,8 @@ impl MapCanvas {
         }
     }
 
-    /// The most samples on a side of a pixel with which a picture of this size can be drawn, at least 1.
+    /// The most samples on a side of a pixel with which a picture of this size can be drawn, at
+    /// least 1.
     #[must_use]
     pub fn most_samples(&self, size_px: [u32; 2]) -> u32 {
         let longest_px = size_px.into_iter().max().unwrap_or(1);
@@ -249,8 +254,8 @@ impl MapCanvas {
         self.counts
     }
 
-    /// The pictures that are shown, each with the columns where it is seen. Of two pictures beside each other, the second is seen from the
-    /// share `divider` of the width on.
+    /// The pictures that are shown, each with the columns where it is seen. Of two pictures beside
+    /// each other, the second is seen from the share `divider` of the width on.
     #[must_use]
     pub fn parts(&self, divider: f32) -> Vec<(&Picture, Range<u32>)> {
         let Some(scene) = &self.shown else { return Vec::new() };

@@ -61,7 +61,8 @@ impl Notices {
         self.add(words, Some(now_s + NEWS_S));
     }
 
-    /// Warns where the processor draws. `roads` is how roads are drawn, `asked` how they would be drawn by a graphics card.
+    /// Warns where the processor draws. `roads` is how roads are drawn, `asked` how they would be
+    /// drawn by a graphics card.
     pub fn warn_of_software(&mut self, gpu: &Gpu, roads: RoadMethod, asked: RoadMethod) {
         if gpu.is_software() {
             let adapter = gpu.adapter_name();

@@ -1,4 +1,5 @@
-//! A map that a person moves, whatever shows it: its state, and what is asked of it between two frames and in a frame.
+//! A map that a person moves, whatever shows it: its state, and what is asked of it between two
+//! frames and in a frame.
 //!
 //! ```text
 //!  inputs, commands, settings ──► Session::step ──► camera, tiles ──► scene ──► MapCanvas ──► pictures
@@ -62,7 +63,8 @@ pub struct SessionStart {
     pub inertia: Inertia,
 }
 
-/// A map that a person moves. Times are seconds of one clock, positions pixels of what shows the map.
+/// A map that a person moves. Times are seconds of one clock, positions pixels of what shows the
+/// map.
 pub struct Session {
     package: ShownPackage,
     /// The tiles, from the request to the drawing.
@@ -220,8 +222,8 @@ impl Session {
         self.camera.input(input, now_s, &ground);
     }
 
-    /// Changes to a view straight from above, or back. Flights are in perspective: while one is recorded, nothing is done. Returns whether
-    /// something was.
+    /// Changes to a view straight from above, or back. Flights are in perspective: while one is
+    /// recorded, nothing is done. Returns whether something was.
     pub fn toggle_above(&mut self, now_s: f64) -> bool {
         let is_recording = self.flights.recording_s(now_s).is_some();
         if !is_recording {
@@ -230,7 +232,8 @@ impl Session {
         !is_recording
     }
 
-    /// Begins to record a flight, unless the view is from above; one that is being recorded already is dropped. Returns whether it began.
+    /// Begins to record a flight, unless the view is from above; one that is being recorded already
+    /// is dropped. Returns whether it began.
     pub fn start_recording(&mut self, now_s: f64) -> bool {
         let is_above = self.camera.view().from_above.is_some();
         if !is_above {
@@ -267,7 +270,8 @@ impl Session {
         Ok(())
     }
 
-    /// Shows the view of a request at once. Where finer ground comes, at another height, the view follows it until somebody moves the map.
+    /// Shows the view of a request at once. Where finer ground comes, at another height, the view
+    /// follows it until somebody moves the map.
     ///
     /// # Errors
     /// When the place has no ground, and no height is given.
@@ -308,7 +312,8 @@ impl Session {
         self.placed = Some((request, self.camera.view()));
     }
 
-    /// The view has come to rest, and all its tiles are there: the ground of a place that was jumped to will not change any more.
+    /// The view has come to rest, and all its tiles are there: the ground of a place that was
+    /// jumped to will not change any more.
     pub fn settle(&mut self) {
         self.placed = None;
     }
@@ -373,7 +378,8 @@ impl Session {
         SessionStep { camera, evicted: evict, has_new_tiles, is_under_way }
     }
 
-    /// Everything on the graphics card is lost, or other parts of tiles are needed: all tiles are loaded again.
+    /// Everything on the graphics card is lost, or other parts of tiles are needed: all tiles are
+    /// loaded again.
     pub fn begin_again(&mut self) {
         self.tiles.begin_again();
         // A frozen choice of tiles would stay empty.
@@ -408,7 +414,8 @@ impl Session {
         }
     }
 
-    /// Looks at the ground under the cursor and in the middle; `is_new` says that something was drawn.
+    /// Looks at the ground under the cursor and in the middle; `is_new` says that something was
+    /// drawn.
     pub fn look_at_ground(&mut self, camera: &Camera, is_new: bool) {
         let scale = self.vertical_scale();
         let coordinates = &self.package.package.manifest().coordinates;

@@ -17,7 +17,8 @@ pub struct FrameRest {
 }
 
 impl Session {
-    /// What is known of the map before anything is drawn; `labels` are what the roads of each class are called.
+    /// What is known of the map before anything is drawn; `labels` are what the roads of each class
+    /// are called.
     #[must_use]
     pub fn about(&self, labels: &[String], gpu: &Gpu) -> Value {
         let (manifest, look) = (self.manifest(), self.look());

@@ -116,7 +116,8 @@ pub mod range {
 }
 
 impl MapSettings {
-    /// What is shown where nothing else is asked for: roads like these, everything of the first style, true heights.
+    /// What is shown where nothing else is asked for: roads like these, everything of the first
+    /// style, true heights.
     #[must_use]
     pub fn usual(roads: RoadOptions) -> Self {
         Self {

@@ -47,7 +47,8 @@ pub struct ShownView {
 pub type CommandOf = Box<dyn Fn(&ShownView) -> String>;
 
 impl ShownView {
-    /// What is shown, with so many files of lines, and in words what no command can tell of it. `None` where the style has no name.
+    /// What is shown, with so many files of lines, and in words what no command can tell of it.
+    /// `None` where the style has no name.
     #[must_use]
     pub fn of(session: &Session, overlays: usize) -> Option<(Self, String)> {
         let settings = &session.settings;

@@ -1,4 +1,5 @@
-//! Views of a package, and the requests that show them: of the first view, of a place, of what is seen now.
+//! Views of a package, and the requests that show them: of the first view, of a place, of what is
+//! seen now.
 
 use corniche_tileset::Manifest;
 use corniche_viewer::{
@@ -92,8 +93,9 @@ fn in_left_part(camera: &Camera, orientation: Orientation, window_width_px: u32)
 
 /// The request that shows a view again. World heights are `vertical_scale` times true ones.
 ///
-/// [`CameraRequest::camera`] makes the same camera of it, whatever the ground there. Without ground in the middle of the picture, the
-/// point looked at hangs in the air at the distance that drags and turns go by.
+/// [`CameraRequest::camera`] makes the same camera of it, whatever the ground there. Without ground
+/// in the middle of the picture, the point looked at hangs in the air at the distance that drags
+/// and turns go by.
 pub(crate) fn request_of_view(
     view: &View,
     ground: &dyn KnownGround,

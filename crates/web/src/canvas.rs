@@ -58,8 +58,8 @@ impl PageCanvas {
         self.map.gpu()
     }
 
-    /// Draws the scene and shows it, unless it is shown already; of two pictures, the second from the share `divider` of the width on.
-    /// Returns whether something was drawn.
+    /// Draws the scene and shows it, unless it is shown already; of two pictures, the second from
+    /// the share `divider` of the width on. Returns whether something was drawn.
     ///
     /// # Errors
     /// When the picture is beyond what the adapter can draw, or the canvas cannot be drawn to.

@@ -111,7 +111,8 @@ impl Decoders {
         TileGeometry::from_bytes(&bytes.to_vec()).map_err(|error| failed(error.to_string()))
     }
 
-    /// The worker with the fewest jobs; a job counts until it is answered, whether somebody waits or not.
+    /// The worker with the fewest jobs; a job counts until it is answered, whether somebody waits
+    /// or not.
     fn least_busy(&self) -> u32 {
         let jobs_of = |worker: &u32| {
             JOBS.with_borrow(|jobs| {

@@ -10,7 +10,8 @@
 //! come by range requests (`source`), tiles are decoded by the page's workers (`worker`), each an instance of this module; no memory is
 //! shared, so that any static host will do. What fails is told as a `problem::Problem`: a kind for programs, a message and advice for people.
 //!
-//! This crate never computes geometry, and has no controls of its own but what a page can say: the map is a session of `corniche-live`.
+//! This crate never computes geometry, and has no controls of its own but what a page can say: the
+//! map is a session of `corniche-live`.
 
 #[cfg(any(test, target_arch = "wasm32"))]
 mod tables;

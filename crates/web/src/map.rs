@@ -1,4 +1,5 @@
-//! The map of a page: a session of `corniche-live`, its tiles from a server, and what the page is told.
+//! The map of a page: a session of `corniche-live`, its tiles from a server, and what the page is
+//! told.
 
 use std::rc::Rc;
 

@@ -1,5 +1,5 @@
-//! The state of the window, without the window system: a desk of `corniche-live`, and pictures and files. What a frame does is in
-//! `app/frame.rs`.
+//! The state of the window, without the window system: a desk of `corniche-live`, and pictures and
+//! files. What a frame does is in `app/frame.rs`.
 
 mod captures;
 mod frame;
@@ -44,7 +44,8 @@ pub(crate) struct AppPlatform {
 }
 
 impl App {
-    /// Ready for the first frame of a package with this ground, which the platform has looked up, because tiles must be waited for.
+    /// Ready for the first frame of a package with this ground, which the platform has looked up,
+    /// because tiles must be waited for.
     ///
     /// # Errors
     /// When the place to look at has no ground, or the trace cannot be written.

@@ -1,5 +1,5 @@
-//! What the window has on the graphics card, apart from the surface: the map, and textures of the panel. When the device is lost, a new
-//! canvas takes the place of the old one.
+//! What the window has on the graphics card, apart from the surface: the map, and textures of the
+//! panel. When the device is lost, a new canvas takes the place of the old one.
 
 mod snapshot;
 

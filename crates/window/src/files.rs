@@ -1,5 +1,5 @@
-//! Pictures and flights as files, written by a thread of their own in the order in which they were asked for. They are numbered, and no
-//! existing file is replaced.
+//! Pictures and flights as files, written by a thread of their own in the order in which they were
+//! asked for. They are numbered, and no existing file is replaced.
 
 use std::{
     fs::{self, OpenOptions},
@@ -108,7 +108,8 @@ impl FileWriter {
         self.saved.try_iter().collect()
     }
 
-    /// Waits until all files are written; the result is that of the files that [`FileWriter::news`] did not yet tell of.
+    /// Waits until all files are written; the result is that of the files that [`FileWriter::news`]
+    /// did not yet tell of.
     pub(crate) fn finish(&mut self) -> Vec<Saved> {
         if let Some(Writer { work, thread }) = self.writer.take() {
             drop(work);

@@ -6,10 +6,11 @@
 //!                           └───────── panel, overlay ◄── content
 //! ```
 //!
-//! [`run`] opens the window and returns when it is closed; [`watch`] opens one on pictures that come from elsewhere.
-//! `platform` is the one module that knows the window system; `canvas` is all that lies on the graphics card, `files` writes. `app` is a
-//! session of `corniche-live` and what is shown beside its map: it knows neither a window nor a clock. Nothing is drawn unless something
-//! moves, loads or is touched.
+//! [`run`] opens the window and returns when it is closed; [`watch`] opens one on pictures that
+//! come from elsewhere. `platform` is the one module that knows the window system; `canvas` is all
+//! that lies on the graphics card, `files` writes. `app` is a session of `corniche-live` and what
+//! is shown beside its map: it knows neither a window nor a clock. Nothing is drawn unless
+//! something moves, loads or is touched.
 //!
 //! This crate never reads elevation files or extracts and never computes geometry; pictures of the map are
 //! `corniche-viewer`'s.

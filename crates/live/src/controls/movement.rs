@@ -1,4 +1,5 @@
-//! Movements of the camera that take several frames: drags, steps that were asked for, and the way to another view.
+//! Movements of the camera that take several frames: drags, steps that were asked for, and the way
+//! to another view.
 
 use corniche_viewer::camera::Orientation;
 use glam::{DVec2, DVec3};

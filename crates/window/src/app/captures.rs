@@ -104,8 +104,8 @@ impl Captures {
         had_some.then_some(NotSaved::DeviceLost)
     }
 
-    /// The window closes: waits for the pictures that are being taken and written. Returns what became of them, for there is no panel any
-    /// more to show it.
+    /// The window closes: waits for the pictures that are being taken and written. Returns what
+    /// became of them, for there is no panel any more to show it.
     pub(crate) fn end(
         &mut self,
         canvas: &Canvas,

@@ -1,4 +1,5 @@
-//! What can be dragged on the map: the line between the two pictures of a split screen, with their names, and points of drawn lines.
+//! What can be dragged on the map: the line between the two pictures of a split screen, with their
+//! names, and points of drawn lines.
 
 use corniche_live::{DrawingContent, MapSettings, range};
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};

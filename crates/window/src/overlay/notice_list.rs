@@ -1,4 +1,5 @@
-//! What is told in the upper left corner of the map: the legend of a difference, that there is no ground, and the newest notices.
+//! What is told in the upper left corner of the map: the legend of a difference, that there is no
+//! ground, and the newest notices.
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
-//! The panel's sections of buttons: what moves the camera, changes drawn lines, and saves pictures and flights.
+//! The panel's sections of buttons: what moves the camera, changes drawn lines, and saves pictures
+//! and flights.
 
 use corniche_live::{Command, DrawingCommand, DrawingContent, MapSettings, Shot, controls::Mode};
 use egui::{Key, TextEdit, Ui};

@@ -1,4 +1,5 @@
-//! The panel's sections for how the map looks: methods and classes of roads, style, heights, layers, and what few people need.
+//! The panel's sections for how the map looks: methods and classes of roads, style, heights,
+//! layers, and what few people need.
 
 use std::ops::RangeInclusive;
 

@@ -13,7 +13,8 @@ use corniche_viewer::{
 
 use crate::{WindowError, WindowRequest};
 
-/// A package that can be shown, its tiles for threads that wait for them, and the ground for its first view.
+/// A package that can be shown, its tiles for threads that wait for them, and the ground for its
+/// first view.
 pub(crate) struct OpenedPackage {
     pub(crate) tiles: Arc<dyn BlockingPackage + Send + Sync>,
     ground: SightedGround,
@@ -44,7 +45,8 @@ impl OpenedPackage {
         Ok(Self { tiles, ground: SightedGround { heights_m, ..ground } })
     }
 
-    /// The ground by which the first camera is set up, with its height at the place that the camera looks at.
+    /// The ground by which the first camera is set up, with its height at the place that the camera
+    /// looks at.
     ///
     /// # Errors
     /// When the place is too far away from the package, or a tile there cannot be read.

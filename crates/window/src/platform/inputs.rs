@@ -199,7 +199,8 @@ impl Inputs {
     }
 }
 
-/// What is printed on a key, and where it is on the keyboard, by the names of the W3C: the window library has the same.
+/// What is printed on a key, and where it is on the keyboard, by the names of the W3C: the window
+/// library has the same.
 fn names(logical: &LogicalKey, physical: PhysicalKey) -> (String, String) {
     let sign = match logical {
         LogicalKey::Character(sign) => sign.to_string(),
