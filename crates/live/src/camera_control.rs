@@ -54,28 +54,15 @@ impl CameraControl {
         let input = if click == Click::Double {
             Input::DoubleClick { at_px, modifiers }
         } else {
-            self.is_dragging = true;
             Input::Press { button, at_px, modifiers }
         };
         self.input(&input, now_s, ground);
     }
 
-    /// The same for a press that is never the second of a double click.
-    pub fn press_once(
-        &mut self,
-        button: Button,
-        at_px: DVec2,
-        modifiers: Modifiers,
-        now_s: f64,
-        ground: &dyn KnownGround,
-    ) {
-        self.is_dragging = true;
-        self.input(&Input::Press { button, at_px, modifiers }, now_s, ground);
-    }
-
-    /// Any other input.
+    /// Any other input, and a press that is never the second of a double click.
     pub fn input(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
         match input {
+            Input::Press { .. } => self.is_dragging = true,
             Input::Move { at_px } => self.clicks.move_to(self.in_points(*at_px)),
             Input::Release { button } => {
                 self.is_dragging = false;

@@ -64,7 +64,7 @@ impl MapDesk {
         if !is_drawn {
             self.session.press(button, at_px, modifiers, now_s);
         } else if !self.drawing.press(at_px, modifiers, &self.session) {
-            self.session.press_once(button, at_px, modifiers, now_s);
+            self.session.input(&Input::Press { button, at_px, modifiers }, now_s);
         }
     }
 

@@ -56,7 +56,7 @@ pub use {
     flights::Flights,
     frame_pace::{FramePace, FrameTimes, Redraw},
     ground_probe::{GroundPoint, GroundProbe},
-    map_canvas::{Counts, MapCanvas, MapScene, PixelReading, Timing},
+    map_canvas::{Counts, MapCanvas, MapScene, PixelReading},
     notices::{NotSaved, Notice, Notices},
     picked_road::{PickPlace, PickedRoad},
     session::{Session, SessionStart, SessionStep},

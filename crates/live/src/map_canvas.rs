@@ -88,20 +88,10 @@ pub struct Counts {
     pub segments: u64,
 }
 
-/// Whether the passes of a canvas are timed, where the graphics card can do that.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Timing {
-    /// Passes are timed.
-    On,
-    /// Passes are not timed.
-    Off,
-}
-
 /// What a map has on the graphics card. When the device is lost, a new canvas takes the place of
 /// the old one.
 pub struct MapCanvas {
     gpu: Rc<Gpu>,
-    timing: Timing,
     renderer: Renderer,
     tiles: ResidentTiles,
     /// One for each method that is shown.
@@ -122,11 +112,10 @@ struct MethodPicture {
 impl MapCanvas {
     /// Nothing drawn yet.
     #[must_use]
-    pub fn new(gpu: Gpu, timing: Timing) -> Self {
+    pub fn new(gpu: Gpu) -> Self {
         Self {
             renderer: Renderer::new(&gpu),
             gpu: Rc::new(gpu),
-            timing,
             tiles: ResidentTiles::default(),
             methods: Vec::new(),
             difference: None,
@@ -213,10 +202,9 @@ impl MapCanvas {
         if let Some(method) = self.methods.get_mut(place) {
             method.targets = targets;
         } else {
-            let timer = match self.timing {
-                Timing::On => PassTimer::new(&self.gpu),
-                Timing::Off => None,
-            };
+            // Pages do not show how long passes take.
+            let is_timed = !cfg!(target_arch = "wasm32");
+            let timer = is_timed.then(|| PassTimer::new(&self.gpu)).flatten();
             self.methods.push(MethodPicture { targets, timer, times: None, is_timing: false });
         }
         Ok(())

@@ -210,13 +210,8 @@ impl Session {
         self.camera.press(button, at_px, modifiers, now_s, &ground);
     }
 
-    /// The same for a press that is never the second of a double click.
-    pub fn press_once(&mut self, button: Button, at_px: DVec2, modifiers: Modifiers, now_s: f64) {
-        let ground = self.package.ground(&self.tiles, &self.settings);
-        self.camera.press_once(button, at_px, modifiers, now_s, &ground);
-    }
-
-    /// Any other input that moves the camera.
+    /// Any other input that moves the camera, and a press that is never the second of a double
+    /// click.
     pub fn input(&mut self, input: &Input, now_s: f64) {
         let ground = self.package.ground(&self.tiles, &self.settings);
         self.camera.input(input, now_s, &ground);

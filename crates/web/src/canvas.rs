@@ -1,6 +1,6 @@
 //! The canvas of a page, to which the pictures of a map are copied.
 
-use corniche_live::{MapCanvas, MapScene, PixelReading, Timing};
+use corniche_live::{MapCanvas, MapScene, PixelReading};
 use corniche_viewer::gpu::Gpu;
 use web_sys::HtmlCanvasElement;
 
@@ -49,7 +49,7 @@ impl PageCanvas {
         let gpu = Gpu::request(&instance, Some(&surface))
             .await
             .map_err(|error| Problem::of_gpu(&error))?;
-        let map = MapCanvas::new(gpu, Timing::Off);
+        let map = MapCanvas::new(gpu);
         Ok(Self { map, surface, canvas, configured_px: None, divider: 0.5 })
     }
 

@@ -3,7 +3,7 @@
 
 mod snapshot;
 
-use corniche_live::{MapCanvas, MapScene, Timing};
+use corniche_live::{MapCanvas, MapScene};
 use corniche_viewer::gpu::{Gpu, GpuError};
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_wgpu::ScreenDescriptor;
@@ -47,7 +47,7 @@ impl Canvas {
         Self {
             ui: egui_wgpu::Renderer::new(gpu.device(), format, options),
             format,
-            map: MapCanvas::new(gpu, Timing::On),
+            map: MapCanvas::new(gpu),
             pictures: Vec::new(),
         }
     }
