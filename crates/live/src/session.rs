@@ -418,3 +418,7 @@ impl Session {
         self.probe.look(camera, self.cursor_px, is_new, &ground, scale, coordinates);
     }
 }
+
+#[cfg(test)]
+#[path = "session_tests.rs"]
+mod tests;
