@@ -99,8 +99,8 @@ pub const KEY_HELP: [(&str, &str); 24] = [
 ];
 
 impl Key {
-    /// The key with this code, as the W3C names the places of keys: arrows and the keys of fly
-    /// mode.
+    /// The key with this code, as the W3C names the places of keys: arrows, the keys of fly
+    /// mode, and those that have + and − on many keyboards.
     #[must_use]
     pub fn of_code(code: &str) -> Option<Self> {
         Some(match code {
@@ -114,6 +114,8 @@ impl Key {
             "KeyD" => Self::StrafeRight,
             "KeyE" => Self::Rise,
             "KeyQ" => Self::Sink,
+            "Equal" | "NumpadAdd" => Self::ZoomIn,
+            "Minus" | "NumpadSubtract" => Self::ZoomOut,
             _ => return None,
         })
     }

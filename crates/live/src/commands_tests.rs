@@ -26,6 +26,8 @@ fn fly_mode_goes_by_the_place_of_keys_and_zoom_by_their_signs() {
     assert_eq!(Key::of("+", "BracketRight"), Some(Key::ZoomIn));
     assert_eq!(Key::of("ArrowUp", "Numpad8"), Some(Key::Up));
     assert_eq!(Key::of("8", "ArrowUp"), None, "a sign counts, not a position");
+    assert_eq!(Key::of("´", "Equal"), None, "on a German keyboard");
+    assert_eq!(Key::of_code("Equal"), Some(Key::ZoomIn), "where only the position is known");
     assert_eq!(Key::of("n", "KeyN"), None);
 }
 

@@ -102,7 +102,7 @@ impl Flights {
     }
 
     /// Plays a flight from now on.
-    pub fn play(&mut self, flight: Flight, now_s: f64) {
+    pub(crate) fn play(&mut self, flight: Flight, now_s: f64) {
         self.playing = Some((flight, now_s));
     }
 

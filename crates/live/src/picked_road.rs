@@ -7,6 +7,7 @@ use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_styles::Style;
 use corniche_tileset::{Manifest, Sections, decode};
 use corniche_viewer::{ClassSet, tiles::LoadTileError};
+use serde_json::{Value, json};
 
 use crate::ground_probe::GroundPoint;
 
@@ -79,6 +80,21 @@ impl PickPlace {
         let record = record_of(road.way_id);
         let attributes = record.map(|record| texts(&record.attributes)).unwrap_or_default();
         Ok(Some(PickedRoad { way_id: road.way_id, class: road.class, attributes }))
+    }
+}
+
+impl PickPlace {
+    /// What was picked, as a page is told; `labels` are what the roads of each class are called.
+    #[must_use]
+    pub fn record(&self, road: Option<PickedRoad>, labels: &[String]) -> Value {
+        let road = road.map(|PickedRoad { way_id, class, attributes }| {
+            let class = class.number();
+            let label = labels.get(usize::from(class)).map_or("", String::as_str);
+            json!({ "way": way_id, "class": class, "label": label, "attributes": attributes })
+        });
+        let mut record = self.point.record();
+        record["road"] = json!(road);
+        record
     }
 }
 

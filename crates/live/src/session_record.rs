@@ -1,8 +1,13 @@
-//! What a page is told of a session, as JSON.
+//! What a page says and is told of a session, as JSON.
 
 use corniche_styles::Rgb;
 use corniche_tileset::FORMAT_VERSION;
-use corniche_viewer::{BoundaryLines, gpu::Gpu};
+use corniche_viewer::{
+    BoundaryLines,
+    flight::{Flight, FlightRecord, WorkingCrs},
+    gpu::Gpu,
+    range,
+};
 use serde_json::{Value, json};
 
 use crate::{controls::Mode, map_canvas::Counts, session::Session, view_record::ViewRecord};
@@ -47,6 +52,53 @@ impl Session {
         })
     }
 
+    /// Moves to a place as JSON, in what is `size_px` large: at once, or in some time.
+    ///
+    /// # Errors
+    /// In words, when the text is no place, or there is no ground.
+    pub fn go_to_record(
+        &mut self,
+        place: &str,
+        size_px: [u32; 2],
+        is_jump: bool,
+        now_s: f64,
+    ) -> Result<(), String> {
+        let place: ViewRecord = serde_json::from_slice(place.as_bytes())
+            .map_err(|error| format!("the place: {error}"))?;
+        let request = place.request();
+        range::check_camera(request).map_err(|error| error.to_string())?;
+        let gone = if is_jump {
+            self.jump_to(request, size_px)
+        } else {
+            self.travel_to(request, size_px, now_s)
+        };
+        gone.map_err(|error| error.to_string())
+    }
+
+    /// Ends the recording; the flight as JSON, with the fields of its TOML.
+    ///
+    /// # Errors
+    /// In words, when nothing was recorded.
+    pub fn stop_recording(&mut self, now_s: f64) -> Result<String, String> {
+        let flight = self.flights.stop_recording(now_s).ok_or("no flight is being recorded")?;
+        let flight = flight.map_err(|error| error.to_string())?;
+        let record = flight.record(WorkingCrs::of(self.manifest()));
+        serde_json::to_string(&record).map_err(|error| error.to_string())
+    }
+
+    /// Plays a flight: JSON with the fields of its TOML.
+    ///
+    /// # Errors
+    /// In words, when the text is none for this package.
+    pub fn play(&mut self, flight: &str, now_s: f64) -> Result<(), String> {
+        let record: FlightRecord = serde_json::from_slice(flight.as_bytes())
+            .map_err(|error| format!("this is no flight: {error}"))?;
+        let manifest = self.manifest();
+        let flight = Flight::of_record(&record, WorkingCrs::of(manifest), &manifest.coordinates);
+        self.flights.play(flight.map_err(|error| error.to_string())?, now_s);
+        Ok(())
+    }
+
     /// What came of a frame, and whether nothing moves and nothing is loaded any more.
     #[must_use]
     pub fn report(
@@ -59,10 +111,6 @@ impl Session {
         let Self { tiles, camera, flights, probe, .. } = self;
         let (drawn, missing) = (tiles.drawn().len(), tiles.missing());
         let (loading, is_full) = (tiles.loading(), tiles.is_full());
-        let cursor = probe.cursor().map(|point| {
-            let ([lon, lat], [.., height]) = (point.lon_lat_deg, point.at_m);
-            json!({ "lon": lon, "lat": lat, "height": height })
-        });
         let point_scale = self.manifest().point_scale;
         let metres_per_pixel = probe.middle_pixel_m().map(|pixel_m| pixel_m / point_scale);
         let is_playing = flights.is_playing();
@@ -75,7 +123,7 @@ impl Session {
             "next": if is_busy { "now" } else { "asked" },
             "is_settled": is_settled,
             "view": ViewRecord::of(self.request()),
-            "cursor": cursor,
+            "cursor": probe.cursor().map(|point| point.record()),
             "metres_per_pixel": metres_per_pixel,
             "metres_per_point": metres_per_pixel.map(|pixel_m| pixel_m * pixels_per_point),
             "mode": if camera.navigator.mode() == Mode::Fly { "fly" } else { "map" },

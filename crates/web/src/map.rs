@@ -5,14 +5,10 @@ use std::rc::Rc;
 
 use corniche_live::{
     FrameRest, MapScene, MapSettings, NamedStyle, Session, SettingsRecord, StyleList,
-    TileLoader as _, ViewRecord,
+    TileLoader as _,
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
-use corniche_viewer::{
-    flight::{Flight, FlightRecord, WorkingCrs},
-    range,
-};
 use serde_json::{Value, json};
 
 use crate::{
@@ -78,39 +74,6 @@ impl Map {
             self.anew_s = Some(self.last_s);
         }
         self.settings = changed;
-        Ok(())
-    }
-
-    /// Moves to a place that the page names, as JSON.
-    pub(crate) fn go(&mut self, place: &str, now_s: f64, is_jump: bool) -> Result<(), String> {
-        let place: ViewRecord = serde_json::from_slice(place.as_bytes())
-            .map_err(|error| format!("the place: {error}"))?;
-        let request = place.request();
-        range::check_camera(request).map_err(|error| error.to_string())?;
-        let gone = if is_jump {
-            self.session.jump_to(request, self.size_px)
-        } else {
-            self.session.travel_to(request, self.size_px, now_s)
-        };
-        gone.map_err(|error| error.to_string())
-    }
-
-    /// Ends the recording; the flight as JSON, with the fields of its TOML.
-    pub(crate) fn stop_recording(&mut self, now_s: f64) -> Result<String, String> {
-        let recorded = self.session.flights.stop_recording(now_s);
-        let flight = recorded.ok_or("no flight is being recorded")?;
-        let flight = flight.map_err(|error| error.to_string())?;
-        let record = flight.record(WorkingCrs::of(self.session.manifest()));
-        serde_json::to_string(&record).map_err(|error| error.to_string())
-    }
-
-    /// Plays a flight: JSON with the fields of its TOML.
-    pub(crate) fn play(&mut self, flight: &str, now_s: f64) -> Result<(), String> {
-        let record: FlightRecord = serde_json::from_slice(flight.as_bytes())
-            .map_err(|error| format!("this is no flight: {error}"))?;
-        let manifest = self.session.manifest();
-        let flight = Flight::of_record(&record, WorkingCrs::of(manifest), &manifest.coordinates);
-        self.session.flights.play(flight.map_err(|error| error.to_string())?, now_s);
         Ok(())
     }
 

@@ -4,8 +4,8 @@ use std::{collections::BTreeMap, rc::Rc, sync::Arc};
 
 use corniche_geom::TileId;
 use corniche_live::{
-    FirstLook, KnownTiles, Session, SessionStart, SettingChanges, SettingsRecord, ViewRecord,
-    controls::View, first_view, foreseen,
+    FirstLook, KnownTiles, MapSettings, Session, SessionStart, SettingChanges, SettingsRecord,
+    ViewRecord, controls::View, first_view, foreseen,
 };
 use corniche_styles::Style;
 use corniche_tileset::{Manifest, OpenError, Package};
@@ -60,7 +60,7 @@ fn shared(package: PackageTiles<WebSource>) -> Arc<PackageTiles<WebSource>> {
 
 /// What is asked of the first view.
 struct FirstViewRequest<'a> {
-    settings: &'a SettingsRecord,
+    settings: &'a MapSettings,
     style: &'a Style,
     request: CameraRequest,
     /// Pixels at the right that are covered by a panel.
@@ -120,7 +120,7 @@ impl Opened {
         let manifest = package.manifest();
         let decoders = Decoders::new(host.clone(), &metadata);
         let tileset = Rc::new(Tileset { package: Arc::clone(&package), decoders });
-        let (style, settings) = (first.style, first.settings.of_session());
+        let FirstViewRequest { settings, style, .. } = *first;
         let reading = Reading::of(&settings.decoder(style));
         let (ready, ground) = first_tiles(&tileset, first.request, &reading).await?;
         let home = first.view(manifest, ground, size_px)?;
@@ -179,10 +179,11 @@ pub(crate) async fn open(
     let options: Options =
         serde_json::from_slice(if options.is_empty() { b"{}" } else { options.as_bytes() })
             .map_err(|error| wrong(format!("options: {error}")))?;
-    let settings = SettingsRecord::default().changed(options.settings).map_err(wrong)?;
+    let record = SettingsRecord::default().changed(options.settings).map_err(wrong)?;
+    let settings = record.of_session();
     let request = options.view.map_or(CameraRequest::Overview, |place| place.request());
     range::check_camera(request).map_err(|error| wrong(error.to_string()))?;
-    let style = tables::style(&settings.style).map_err(wrong)?;
+    let style = tables::style(&record.style).map_err(wrong)?;
     let asked_px = options.size_px.unwrap_or([canvas.width(), canvas.height()]);
     let first = FirstViewRequest {
         settings: &settings,
@@ -207,20 +208,20 @@ pub(crate) async fn open(
         package,
         height_range_m: ground.heights_m,
         home,
-        settings: settings.of_session(),
-        styles: style_list(&settings.style, style),
+        settings,
+        styles: style_list(&record.style, style),
         loader: Box::new(loader.clone()),
         budget: StreamBudget { gpu_bytes: options.gpu_bytes.unwrap_or(BUDGET.gpu_bytes), ..BUDGET },
         size_px,
         pixels_per_point: pixels_per_point as f32,
-        inertia: settings.inertia(),
+        inertia: record.inertia(),
     });
     Ok(Map {
         address,
         canvas,
         loader,
         session,
-        settings,
+        settings: record,
         labels,
         size_px,
         pixels_per_point,

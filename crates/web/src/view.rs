@@ -9,7 +9,6 @@ use corniche_live::{
 use corniche_viewer::{gpu::ReadBackError, tiles::MapPackage as _};
 use glam::DVec2;
 use js_sys::{Promise, Uint8Array};
-use serde_json::json as value;
 use wasm_bindgen::{JsValue, prelude::wasm_bindgen};
 use wasm_bindgen_futures::future_to_promise;
 use web_sys::HtmlCanvasElement;
@@ -143,7 +142,7 @@ impl MapView {
             self.0.session.input(&Input::Modify { modifiers }, now_s);
             return false;
         }
-        let Some(key) = key_of(code) else { return false };
+        let Some(key) = Key::of_code(code) else { return false };
         let is_map_mode = self.0.session.camera.navigator.mode() == Mode::Map;
         if control || (key.is_for_flying() && is_map_mode) {
             return false;
@@ -179,7 +178,7 @@ impl MapView {
                     self.0.tell("Flights are recorded in perspective: not from above.");
                 }
             }
-            "stop-recording" => match self.0.stop_recording(now_s) {
+            "stop-recording" => match self.0.session.stop_recording(now_s) {
                 Ok(text) => return text,
                 Err(why) => self.0.warn(why),
             },
@@ -190,7 +189,7 @@ impl MapView {
 
     /// Plays a flight, JSON with the fields of its TOML; returns an empty text, or why not.
     pub fn play(&mut self, flight: &str, now_s: f64) -> String {
-        self.0.play(flight, now_s).err().unwrap_or_default()
+        self.0.session.play(flight, now_s).err().unwrap_or_default()
     }
 
     /// Changes settings: a JSON object with those to change. Returns an empty text, or why not.
@@ -211,7 +210,8 @@ impl MapView {
     /// Looks at a place, at once or by a flight there: JSON. Returns an empty text, or why not.
     pub fn look_at(&mut self, place: &str, now_s: f64, jump: bool) -> String {
         self.0.session.take_over();
-        self.0.go(place, now_s, jump).err().unwrap_or_default()
+        let gone = self.0.session.go_to_record(place, self.0.size_px, jump, now_s);
+        gone.err().unwrap_or_default()
     }
 
     /// Looks at a place as people write it: `9.52,47.14`. Returns an empty text, or why not.
@@ -235,15 +235,7 @@ impl MapView {
             {
                 road = place.road_in(&bytes, tile, package.manifest()).map_err(told)?;
             }
-            let road = road.map(|road| {
-                let class = road.class.number();
-                let label = labels.get(usize::from(class)).map_or("", String::as_str);
-                let (way, attributes) = (road.way_id, road.attributes);
-                value!({ "way": way, "class": class, "label": label, "attributes": attributes })
-            });
-            let ([lon, lat], [.., height]) = (place.point.lon_lat_deg, place.point.at_m);
-            let found = value!({ "lon": lon, "lat": lat, "height": height, "road": road });
-            Ok(json(&found).into())
+            Ok(json(&place.record(road, &labels)).into())
         })
     }
 
@@ -266,12 +258,4 @@ impl MapView {
 
 fn button_of(number: u8) -> Option<Button> {
     [Button::Left, Button::Middle, Button::Right].get(usize::from(number)).copied()
-}
-
-fn key_of(code: &str) -> Option<Key> {
-    match code {
-        "Equal" | "NumpadAdd" => Some(Key::ZoomIn),
-        "Minus" | "NumpadSubtract" => Some(Key::ZoomOut),
-        _ => Key::of_code(code),
-    }
 }
