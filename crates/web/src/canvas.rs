@@ -20,19 +20,9 @@ impl PageCanvas {
     /// A device for a canvas.
     ///
     /// # Errors
-    /// When the browser has no WebGPU, or no adapter that can draw there.
+    /// When the browser has no adapter that can draw there. That it has WebGPU at all, the page has
+    /// found out before.
     pub(crate) async fn new(canvas: HtmlCanvasElement) -> Result<Self, Problem> {
-        let global = js_sys::global();
-        let has_webgpu = js_sys::Reflect::get(&global, &"navigator".into())
-            .and_then(|navigator| js_sys::Reflect::get(&navigator, &"gpu".into()))
-            .is_ok_and(|gpu| !gpu.is_undefined() && !gpu.is_null());
-        if !has_webgpu {
-            return Err(Problem::new(
-                "no-webgpu",
-                "This browser has no WebGPU, or the page is not served by HTTPS.",
-                "Use a current Chrome, Edge, Firefox or Safari, and an address that begins with https:// or http://localhost.",
-            ));
-        }
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: wgpu::Backends::BROWSER_WEBGPU,
             ..wgpu::InstanceDescriptor::new_without_display_handle()

@@ -16,10 +16,9 @@ use wasm_bindgen_futures::spawn_local;
 
 use crate::{
     decoders::{Decoders, Reading},
-    host::Host,
+    host::{Host, pause},
     problem::Problem,
     source::WebSource,
-    timer::pause,
 };
 
 /// A tile that the server did not give is asked for again after this time, and then after twice as long each time …

@@ -13,9 +13,8 @@ use web_sys::AbortController;
 
 use crate::{
     fetch::{UNREACHABLE, diagnosed, range, sent},
-    host::Host,
+    host::{Host, pause},
     problem::Problem,
-    timer::pause,
 };
 
 /// What failed on its way is asked for again so often.

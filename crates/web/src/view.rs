@@ -14,12 +14,11 @@ use wasm_bindgen_futures::future_to_promise;
 use web_sys::HtmlCanvasElement;
 
 use crate::{
-    host::Host,
+    host::{Host, pause},
     map::{Map, changed, clamped},
     open::open,
     problem::{Problem, json},
     tables,
-    timer::pause,
 };
 
 /// A map on a canvas. All positions are pixels of the canvas, all times seconds of one clock.
