@@ -5,15 +5,16 @@ use glam::DVec2;
 
 use crate::{
     clicks::{Click, Clicks},
-    controls::{Button, Inertia, Input, KnownGround, Mode, Modifiers, Navigator, View},
+    controls::{Button, Input, KnownGround, Modifiers, Navigator, View},
 };
 
 /// Tiles are loaded in advance for where the camera will be after this time.
 const AHEAD_S: f64 = 0.5;
 
-/// The camera and what moves it.
+/// The camera, moved by mouse and keys.
 pub struct CameraControl {
-    navigator: Navigator,
+    /// What moves it.
+    pub navigator: Navigator,
     clicks: Clicks,
     is_dragging: bool,
     pixels_per_point: f64,
@@ -53,28 +54,15 @@ impl CameraControl {
         let input = if click == Click::Double {
             Input::DoubleClick { at_px, modifiers }
         } else {
-            self.is_dragging = true;
             Input::Press { button, at_px, modifiers }
         };
         self.input(&input, now_s, ground);
     }
 
-    /// The same for a press that is never the second of a double click.
-    pub fn press_once(
-        &mut self,
-        button: Button,
-        at_px: DVec2,
-        modifiers: Modifiers,
-        now_s: f64,
-        ground: &dyn KnownGround,
-    ) {
-        self.is_dragging = true;
-        self.input(&Input::Press { button, at_px, modifiers }, now_s, ground);
-    }
-
-    /// Any other input.
+    /// Any other input, and a press that is never the second of a double click.
     pub fn input(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
         match input {
+            Input::Press { .. } => self.is_dragging = true,
             Input::Move { at_px } => self.clicks.move_to(self.in_points(*at_px)),
             Input::Release { button } => {
                 self.is_dragging = false;
@@ -89,21 +77,6 @@ impl CameraControl {
             _ => {}
         }
         self.navigator.handle(input, now_s, ground);
-    }
-
-    /// See [`Navigator::jump_to`].
-    pub fn jump_to(&mut self, view: View) {
-        self.navigator.jump_to(view);
-    }
-
-    /// See [`Navigator::travel_to`].
-    pub fn travel_to(&mut self, view: View, now_s: f64) {
-        self.navigator.travel_to(view, now_s);
-    }
-
-    /// See [`Navigator::set_inertia`].
-    pub fn set_inertia(&mut self, inertia: Inertia) {
-        self.navigator.set_inertia(inertia);
     }
 
     /// Pixels to a point of the screen, as in the last frame.
@@ -151,33 +124,16 @@ impl CameraControl {
         ahead
     }
 
-    /// All heights become `factor` times what they were; `ground` is the ground before that.
-    pub fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
-        self.navigator.rescale_heights(factor, ground);
-    }
-
     /// How long ago the camera moved last.
     #[must_use]
     pub fn at_rest_s(&self, now_s: f64) -> f64 {
         now_s - self.moved_s
     }
 
-    /// Whether the camera goes on moving without any input.
-    #[must_use]
-    pub fn is_moving(&self) -> bool {
-        self.navigator.is_moving()
-    }
-
     /// Whether a button of the mouse is held down that was pressed on the map.
     #[must_use]
     pub fn is_dragging(&self) -> bool {
         self.is_dragging
-    }
-
-    /// Map mode or fly mode.
-    #[must_use]
-    pub fn mode(&self) -> Mode {
-        self.navigator.mode()
     }
 
     /// What is seen now.

@@ -24,13 +24,11 @@
 mod bounded_view;
 mod fingers;
 mod flying;
-mod gesture;
 mod input;
+mod movement;
 mod navigator;
 mod options;
-mod pending;
 mod sight;
-mod travel;
 mod view;
 
 pub use self::{

@@ -3,6 +3,7 @@
 use corniche_geom::CoordinateTable;
 use corniche_viewer::camera::Camera;
 use glam::DVec2;
+use serde_json::{Value, json};
 
 use crate::controls::KnownGround;
 
@@ -13,6 +14,14 @@ pub struct GroundPoint {
     pub lon_lat_deg: [f64; 2],
     /// x and y in the working CRS, true height.
     pub at_m: [f64; 3],
+}
+
+impl GroundPoint {
+    /// The place as a page is told.
+    pub(crate) fn record(&self) -> Value {
+        let ([lon, lat], [.., height]) = (self.lon_lat_deg, self.at_m);
+        json!({ "lon": lon, "lat": lat, "height": height })
+    }
 }
 
 /// What rays into the scene found. It is kept while neither the scene nor the cursor changes.

@@ -1,44 +1,72 @@
 //! A map that a person moves, without a window, a page or a clock.
 //!
 //! ```text
-//!  inputs ──► controls ──► camera ──► tiles ──► changes for the graphics card
+//!  inputs ──► controls ──► camera ──► tiles ──► MapCanvas: pictures on the graphics card
 //!                 ▲                     │
 //!                 └── ground, heights ──┘◄── TileLoader: threads, or the workers of a page
 //! ```
 //!
-//! The window and the page in a browser are made of it. [`controls`] move the camera, [`Tiles`] chooses what is loaded, kept and drawn, and
-//! is the ground under the cursor; [`Recorder`] records the camera's way. Times are arguments.
+//! The window and the page in a browser are two faces of one [`Session`]: it has the state of the
+//! map and does what people ask of it. [`controls`] move its camera, [`Tiles`] chooses what is
+//! loaded, kept and drawn, and is the ground under the cursor; a [`MapCanvas`] is what it has on
+//! the graphics card. Times are arguments.
 //!
-//! This crate never draws, never opens a file and knows neither window system nor browser.
+//! This crate never draws but through `corniche-viewer`, never opens a file and knows neither
+//! window system nor browser.
 
+mod byte_ranges;
 mod camera_control;
-mod camera_limits;
 mod clicks;
+mod commands;
 pub mod controls;
-mod first_view;
+mod desk;
+mod drawing;
+mod first_tiles;
+mod flights;
+pub mod formatting;
+mod frame_pace;
 mod ground_probe;
 #[cfg(not(target_arch = "wasm32"))]
 mod loader_threads;
-mod map_scene;
+mod map_canvas;
+mod notices;
+mod picked_road;
 #[doc(hidden)]
 pub mod polled_loader;
-mod recorder;
-mod request_of_view;
-mod tile_loader;
+mod session;
+mod session_record;
+mod settings;
+mod settings_record;
+mod shown_view;
+mod style_list;
 mod tiles;
-mod typed_place;
+mod trace;
+mod view_record;
+mod views;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use loader_threads::LoaderThreads;
 pub use {
+    byte_ranges::{RangeCache, merged_ranges},
     camera_control::CameraControl,
-    camera_limits::{MAX_PITCH_DEG, limits},
-    first_view::first_view,
+    commands::{Command, DrawingCommand, KEY_HELP, Shot},
+    desk::{Errand, MapDesk},
+    drawing::{ClockS, Drawing, DrawingContent, DrawingHandle, DrawnLine, SaveDrawing},
+    first_tiles::{FirstLook, KnownTiles, foreseen, sighted_ground},
+    flights::Flights,
+    frame_pace::{FramePace, FrameTimes, Redraw},
     ground_probe::{GroundPoint, GroundProbe},
-    map_scene::MapScene,
-    recorder::Recorder,
-    request_of_view::{camera_request, request_of_view},
-    tile_loader::{Loaded, TileLoader},
-    tiles::{Changes, ShownGround, Tiles},
-    typed_place::place_in_world,
+    map_canvas::{Counts, MapCanvas, MapScene, PixelReading},
+    notices::{NotSaved, Notice, Notices},
+    picked_road::{PickPlace, PickedRoad},
+    session::{Session, SessionStart, SessionStep},
+    session_record::FrameRest,
+    settings::{Compare, MapSettings, Refinement, Visibility, range},
+    settings_record::{SettingChanges, SettingsRecord},
+    shown_view::{CommandOf, ShownView},
+    style_list::{NamedStyle, Reload, StyleList},
+    tiles::{Loaded, ShownGround, TileLoader, Tiles},
+    trace::{Trace, TraceLine},
+    view_record::ViewRecord,
+    views::{MAX_PITCH_DEG, first_view},
 };

@@ -20,7 +20,7 @@ use std::{
 use corniche_geom::TileId;
 use corniche_viewer::tiles::{LoadTileError, MOST_LOADERS, TileGeometry, TileSource};
 
-use crate::tile_loader::{Loaded, TileLoader};
+use crate::tiles::{Loaded, TileLoader};
 
 /// Threads that load tiles.
 pub struct LoaderThreads {

@@ -13,7 +13,7 @@ use corniche_viewer::tiles::PackageTiles;
 use corniche_geom::TileId;
 use corniche_viewer::tiles::{LoadTileError, TileGeometry};
 
-use crate::tile_loader::{Loaded, TileLoader};
+use crate::tiles::{Loaded, TileLoader};
 
 /// How often a read is polled before its bytes are there.
 const POLLS: u32 = 3;

@@ -12,11 +12,35 @@ use corniche_viewer::{
     lod::{Drawn, Quality},
     pick,
     stream::{Plan, StreamBudget, Streamer, TileFacts},
-    tiles::{TileCatalog, TileGeometry, TileLines},
+    tiles::{LoadTileError, TileCatalog, TileGeometry, TileLines},
 };
 use glam::DVec3;
 
-use crate::{controls::KnownGround, tile_loader::TileLoader};
+use crate::controls::KnownGround;
+
+/// The answer to a request for a tile.
+pub struct Loaded {
+    /// The tile that was asked for.
+    pub id: TileId,
+    /// The decoded tile, or why there is none.
+    pub tile: Result<TileGeometry, LoadTileError>,
+}
+
+/// Loads tiles while the window goes on drawing. Nothing here waits: tiles are requested in one frame and taken in a later
+/// one.
+pub trait TileLoader {
+    /// Asks for tiles, in order, after those asked for before.
+    fn request(&mut self, ids: &[TileId]);
+    /// Drops the requests on which no work has begun.
+    fn forget(&mut self);
+    /// Stops loading tiles that nobody wants any more, as far as it can. Returns those that will not arrive.
+    fn abandon(&mut self, ids: &[TileId]) -> Vec<TileId> {
+        let _ = ids;
+        Vec::new()
+    }
+    /// The tiles that have arrived since this was called last.
+    fn arrivals(&mut self) -> Vec<Loaded>;
+}
 
 /// All tiles, from the request to the drawing.
 pub struct Tiles {

@@ -1,7 +1,7 @@
 // What the shadow root holds: the canvas, and over it the controls.
 import { makeCompass } from "./compass.js";
 import { makeDivider } from "./divider.js";
-import { drawing, make, setText } from "./dom.js";
+import { drawing, make } from "./dom.js";
 import { makeHelp } from "./help.js";
 import { makeHint } from "./hint.js";
 import { icons } from "./icons.js";
@@ -158,6 +158,5 @@ export function makeLayout(shadow, map) {
       canvas.inert = element !== null;
       if (element) root.append(element);
     },
-    say: (/** @type {string} */ text) => setText(opening, text),
   };
 }

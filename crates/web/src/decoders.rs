@@ -1,6 +1,6 @@
 //! The page's side of the workers that decode tiles.
 
-use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
+use std::{cell::RefCell, collections::BTreeMap};
 
 use corniche_geom::TileId;
 use corniche_tileset::Sections;
@@ -9,7 +9,10 @@ use futures_channel::oneshot;
 use js_sys::{Array, Object, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast as _, JsValue, prelude::wasm_bindgen};
 
-use crate::{host::Host, problem::thrown, report::json};
+use crate::{
+    host::Host,
+    problem::{json, object, thrown},
+};
 
 /// Jobs that workers have.
 #[derive(Default)]
@@ -22,8 +25,12 @@ struct Job {
     host: Host,
     worker: u32,
     answer: oneshot::Sender<Result<Uint8Array, String>>,
-    /// Dropped when the worker has answered, whether somebody waits or not.
-    _busy: Busy,
+}
+
+impl Job {
+    fn is_of(&self, host: &Host, worker: u32) -> bool {
+        self.worker == worker && Object::is(self.host.as_ref(), host.as_ref())
+    }
 }
 
 thread_local! {
@@ -50,8 +57,7 @@ impl Reading {
 /// The workers of one map.
 pub(crate) struct Decoders {
     host: Host,
-    /// How many jobs each worker has.
-    loads: Rc<RefCell<Vec<u32>>>,
+    workers: u32,
 }
 
 impl Decoders {
@@ -62,7 +68,7 @@ impl Decoders {
             let message = object(&[("metadata", Uint8Array::from(metadata).into())]);
             host.post(worker, &message, &Array::new());
         }
-        Self { host, loads: Rc::new(RefCell::new(vec![0; workers as usize])) }
+        Self { host, workers }
     }
 
     /// Has a tile decoded.
@@ -80,8 +86,7 @@ impl Decoders {
         let worker = self.least_busy();
         let job = JOBS.with_borrow_mut(|jobs| {
             jobs.last = jobs.last.wrapping_add(1);
-            let busy = Busy::new(&self.loads, worker);
-            let job = Job { host: self.host.clone(), worker, answer, _busy: busy };
+            let job = Job { host: self.host.clone(), worker, answer };
             jobs.under_way.insert(jobs.last, job);
             jobs.last
         });
@@ -106,28 +111,15 @@ impl Decoders {
         TileGeometry::from_bytes(&bytes.to_vec()).map_err(|error| failed(error.to_string()))
     }
 
+    /// The worker with the fewest jobs; a job counts until it is answered, whether somebody waits
+    /// or not.
     fn least_busy(&self) -> u32 {
-        let loads = self.loads.borrow();
-        (0..loads.len()).min_by_key(|worker| loads[*worker]).unwrap_or(0) as u32
-    }
-}
-
-/// A job counts as long as its worker has it.
-struct Busy {
-    loads: Rc<RefCell<Vec<u32>>>,
-    worker: u32,
-}
-
-impl Busy {
-    fn new(loads: &Rc<RefCell<Vec<u32>>>, worker: u32) -> Self {
-        loads.borrow_mut()[worker as usize] += 1;
-        Self { loads: Rc::clone(loads), worker }
-    }
-}
-
-impl Drop for Busy {
-    fn drop(&mut self) {
-        self.loads.borrow_mut()[self.worker as usize] -= 1;
+        let jobs_of = |worker: &u32| {
+            JOBS.with_borrow(|jobs| {
+                jobs.under_way.values().filter(|job| job.is_of(&self.host, *worker)).count()
+            })
+        };
+        (0..self.workers).min_by_key(jobs_of).unwrap_or(0)
     }
 }
 
@@ -151,27 +143,12 @@ pub fn decoded(message: &JsValue) {
 #[wasm_bindgen]
 pub fn worker_failed(host: &Host, worker: u32, why: &str) {
     let failed: Vec<Job> = JOBS.with_borrow_mut(|jobs| {
-        let is_lost =
-            |job: &Job| job.worker == worker && Object::is(job.host.as_ref(), host.as_ref());
-        let lost: Vec<u32> = jobs
-            .under_way
-            .iter()
-            .filter(|(_, job)| is_lost(job))
-            .map(|(number, _)| *number)
-            .collect();
+        let all = jobs.under_way.iter();
+        let lost = all.filter(|(_, job)| job.is_of(host, worker)).map(|(number, _)| *number);
+        let lost: Vec<u32> = lost.collect();
         lost.iter().filter_map(|number| jobs.under_way.remove(number)).collect()
     });
     for job in failed {
         let _ = job.answer.send(Err(format!("a worker failed: {why}")));
     }
-}
-
-/// An object with these fields.
-pub(crate) fn object(fields: &[(&str, JsValue)]) -> JsValue {
-    let object = Object::new();
-    for (name, value) in fields {
-        // Setting a field of an object of one's own cannot fail.
-        let _ = Reflect::set(&object, &(*name).into(), value);
-    }
-    object.into()
 }

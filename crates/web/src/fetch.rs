@@ -21,6 +21,7 @@ pub(crate) const UNREACHABLE: &str = "unreachable";
 
 /// The text for a server that must be set up otherwise.
 const EXPOSE: &str = "Let the server send `Access-Control-Allow-Origin` and `Access-Control-Expose-Headers: Content-Range, ETag, Content-Encoding`.";
+const LATER: &str = "Try again later.";
 const RANGES: &str =
     "Put the package on a server that knows range requests, or use `corniche serve`.";
 
@@ -53,45 +54,38 @@ async fn answer(
     let response = response.map_err(|error| Problem::new(UNREACHABLE, thrown(&error), ""))?;
     let header = |name: &str| response.headers().get(name).ok().flatten();
     let status = response.status();
-    match status {
-        206 => {}
-        200 => {
-            drop_body(&response);
-            return Err(Problem::new(
-                "no-ranges",
-                "The server ignores which bytes are asked for: it sends the whole file, because it knows no range requests.",
-                RANGES,
-            ));
-        }
-        404 | 410 => {
-            return Err(Problem::new(
-                "not-found",
-                format!("The server has no such file ({status})."),
-                "Check the address of the package.",
-            ));
-        }
-        401 | 403 => {
-            let advice = "Check the address, and whether the file is public.";
-            return Err(Problem::new(
-                "not-found",
-                format!("The server refuses access ({status})."),
-                advice,
-            ));
-        }
-        416 => {
-            return Err(Problem::new(
-                "changed",
-                "The file on the server is shorter than it was, or empty.",
-                "Open the map again; fetch or build the package again if that does not help.",
-            ));
-        }
-        _ => {
-            return Err(Problem::new(
-                "network",
-                format!("The server answers {status} {}.", response.status_text()),
-                "Try again later.",
-            ));
-        }
+    let open_again = "Open the map again; fetch or build the package again if that does not help.";
+    let refused = match status {
+        206 => None,
+        200 => Some((
+            "no-ranges",
+            "The server ignores which bytes are asked for: it sends the whole file, because it knows no range requests.".to_owned(),
+            RANGES,
+        )),
+        404 | 410 => Some((
+            "not-found",
+            format!("The server has no such file ({status})."),
+            "Check the address of the package.",
+        )),
+        401 | 403 => Some((
+            "not-found",
+            format!("The server refuses access ({status})."),
+            "Check the address, and whether the file is public.",
+        )),
+        416 => Some((
+            "changed",
+            "The file on the server is shorter than it was, or empty.".to_owned(),
+            open_again,
+        )),
+        _ => Some((
+            "network",
+            format!("The server answers {status} {}.", response.status_text()),
+            LATER,
+        )),
+    };
+    if let Some((kind, message, advice)) = refused {
+        drop_body(&response);
+        return Err(Problem::new(kind, message, advice));
     }
     if let Some(encoding) = header("content-encoding").filter(|encoding| encoding != "identity") {
         drop_body(&response);
@@ -114,11 +108,8 @@ async fn answer(
         ));
     };
     let cut_off = |what: &str| {
-        Problem::new(
-            "network",
-            format!("The answer of the server was cut off: {what}."),
-            "Try again later.",
-        )
+        let message = format!("The answer of the server was cut off: {what}.");
+        Problem::new("network", message, LATER)
     };
     let body = async { JsFuture::from(response.array_buffer()?).await };
     let body = body.await.map_err(|error| cut_off(&thrown(&error)))?;

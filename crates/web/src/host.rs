@@ -1,7 +1,8 @@
-//! What the page does for a map.
+//! What the page and its browser do for a map.
 
-use js_sys::{Array, Promise};
-use wasm_bindgen::{JsValue, prelude::wasm_bindgen};
+use js_sys::{Array, Function, Promise, Reflect};
+use wasm_bindgen::{JsCast as _, JsValue, prelude::wasm_bindgen};
+use wasm_bindgen_futures::JsFuture;
 
 #[wasm_bindgen]
 extern "C" {
@@ -33,4 +34,16 @@ extern "C" {
     /// Whether the map was closed, maybe before it was open.
     #[wasm_bindgen(method, getter)]
     pub fn is_over(this: &Host) -> bool;
+}
+
+/// Lets the browser do other things for so many milliseconds.
+pub(crate) async fn pause(milliseconds: f64) {
+    let promise = Promise::new(&mut |resolve, _| {
+        let global = js_sys::global();
+        let set = Reflect::get(&global, &"setTimeout".into()).unwrap_or(JsValue::UNDEFINED);
+        // Pages and workers of every browser have timers.
+        let _ = set.unchecked_into::<Function>().call2(&global, &resolve, &milliseconds.into());
+    });
+    // The promise is never rejected.
+    let _ = JsFuture::from(promise).await;
 }

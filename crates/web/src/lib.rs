@@ -10,12 +10,9 @@
 //! come by range requests (`source`), tiles are decoded by the page's workers (`worker`), each an instance of this module; no memory is
 //! shared, so that any static host will do. What fails is told as a `problem::Problem`: a kind for programs, a message and advice for people.
 //!
-//! This crate never computes geometry, and has no controls of its own but what a page can say.
+//! This crate never computes geometry, and has no controls of its own but what a page can say: the
+//! map is a session of `corniche-live`.
 
-#[cfg(any(test, target_arch = "wasm32"))]
-mod merging;
-#[cfg(any(test, target_arch = "wasm32"))]
-mod settings;
 #[cfg(any(test, target_arch = "wasm32"))]
 mod tables;
 
@@ -26,14 +23,6 @@ pub mod decoders;
 #[cfg(target_arch = "wasm32")]
 mod fetch;
 #[cfg(target_arch = "wasm32")]
-mod first_tiles;
-#[cfg(target_arch = "wasm32")]
-mod flights;
-#[cfg(target_arch = "wasm32")]
-mod foresight;
-#[cfg(target_arch = "wasm32")]
-mod frame;
-#[cfg(target_arch = "wasm32")]
 pub mod host;
 #[cfg(target_arch = "wasm32")]
 mod loader;
@@ -42,19 +31,11 @@ mod map;
 #[cfg(target_arch = "wasm32")]
 mod open;
 #[cfg(target_arch = "wasm32")]
-mod pick;
-#[cfg(target_arch = "wasm32")]
 mod problem;
-#[cfg(target_arch = "wasm32")]
-mod report;
 #[cfg(target_arch = "wasm32")]
 mod source;
 #[cfg(target_arch = "wasm32")]
-mod timer;
-#[cfg(target_arch = "wasm32")]
 pub mod view;
-#[cfg(target_arch = "wasm32")]
-mod view_record;
 #[cfg(target_arch = "wasm32")]
 pub mod worker;
 

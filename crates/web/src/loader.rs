@@ -8,7 +8,7 @@ use std::{
 };
 
 use corniche_geom::TileId;
-use corniche_live::{Loaded, TileLoader};
+use corniche_live::{Loaded, TileLoader, formatting::with_causes};
 use corniche_tileset::{OpenError, ReadError};
 use corniche_viewer::tiles::{LoadTileError, PackageTiles, TileGeometry};
 use futures_util::future::{AbortHandle, abortable};
@@ -16,10 +16,9 @@ use wasm_bindgen_futures::spawn_local;
 
 use crate::{
     decoders::{Decoders, Reading},
-    host::Host,
-    problem::{Problem, with_causes},
+    host::{Host, pause},
+    problem::Problem,
     source::WebSource,
-    timer::pause,
 };
 
 /// A tile that the server did not give is asked for again after this time, and then after twice as long each time …

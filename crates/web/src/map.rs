@@ -1,39 +1,26 @@
-//! The state of a map, and what a page asks of it.
+//! The map of a page: a session of `corniche-live`, its tiles from a server, and what the page is
+//! told.
 
 use std::rc::Rc;
 
-use corniche_geom::TileId;
 use corniche_live::{
-    CameraControl, GroundProbe, ShownGround, TileLoader as _, Tiles,
-    controls::{Inertia, Input, KnownGround as _, View},
+    FrameRest, MapScene, MapSettings, NamedStyle, Session, SettingsRecord, StyleList,
+    TileLoader as _,
 };
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::{Rgb, RoadStyle, Style};
-use corniche_tileset::{FORMAT_VERSION, Manifest};
-use corniche_viewer::{
-    BoundaryLines, CameraRequest, OffGround, SightedGround,
-    flight::Pose,
-    lod::Fineness,
-    range,
-    tiles::{MapExtent, MapPackage as _, TileDecoder},
-};
-use glam::DVec2;
+use corniche_styles::Style;
+use serde_json::{Value, json};
 
 use crate::{
     canvas::PageCanvas,
     decoders::Reading,
-    flights::Flights,
     loader::{PageLoader, Tileset},
-    report::{About, ClassEntry, GroundPlace, Has, Notice},
-    settings::{Compare, Settings},
+    problem::Problem,
     tables,
-    view_record::{ViewRecord, view_on},
 };
 
-/// A place is picked at most so far beside a road, points of the screen.
-pub(crate) const PICK_POINTS: f64 = 6.0;
-/// A processor that draws takes one sample a pixel until the camera has been at rest for this time.
-pub(crate) const HURRY_S: f64 = 0.15;
+/// While tiles are loaded anew, what was shown stays, but no longer than this.
+const MOST_WAIT_S: f64 = 1.0;
 
 /// A map on a canvas. All positions are pixels of the canvas, all times seconds of one clock.
 pub(crate) struct Map {
@@ -41,24 +28,17 @@ pub(crate) struct Map {
     pub(crate) canvas: PageCanvas,
     pub(crate) tileset: Rc<Tileset>,
     pub(crate) loader: PageLoader,
-    pub(crate) tiles: Tiles,
-    pub(crate) camera: CameraControl,
-    pub(crate) settings: Settings,
-    pub(crate) style: Style,
+    pub(crate) session: Session,
+    pub(crate) settings: SettingsRecord,
     pub(crate) labels: [String; FunctionalRoadClass::COUNT],
-    pub(crate) height_range_m: [f64; 2],
     pub(crate) size_px: [u32; 2],
     pub(crate) pixels_per_point: f64,
-    pub(crate) probe: GroundProbe,
-    pub(crate) cursor_px: Option<DVec2>,
-    pub(crate) flights: Flights,
-    pub(crate) notices: Vec<Notice>,
+    /// Messages that the page was not told yet.
+    pub(crate) notices: Vec<Value>,
     /// The scene of the last frame was drawn with fewer samples than asked.
     pub(crate) is_hurried: bool,
     /// When tiles began to be loaded anew; what was shown stays until those of the view are there.
     pub(crate) anew_s: Option<f64>,
-    /// A place that was jumped to, and the view of it. The ground there may still be on its way.
-    pub(crate) placed: Option<(CameraRequest, View)>,
     /// Time of the last frame.
     pub(crate) last_s: f64,
 }
@@ -70,208 +50,149 @@ impl Drop for Map {
 }
 
 impl Map {
-    pub(crate) fn manifest(&self) -> &Manifest {
-        self.tileset.package.manifest()
+    /// A warning for the person.
+    pub(crate) fn warn(&mut self, text: impl Into<String>) {
+        self.notices.push(json!({ "kind": "warn", "text": text.into() }));
     }
 
-    pub(crate) fn vertical_scale(&self) -> f64 {
-        self.settings.exaggeration * self.manifest().point_scale
+    /// News for the person.
+    pub(crate) fn tell(&mut self, text: &str) {
+        self.notices.push(json!({ "kind": "tell", "text": text }));
     }
 
-    /// Somebody moves the map, and has it from now on.
-    pub(crate) fn take_over(&mut self) {
-        self.flights.stop_playing();
-        self.placed = None;
-    }
-
-    pub(crate) fn input(&mut self, input: &Input, now_s: f64) {
-        let ground = ground(
-            &self.tiles,
-            &self.settings,
-            self.tileset.package.manifest(),
-            self.height_range_m,
-        );
-        self.camera.input(input, now_s, &ground);
-    }
-
-    /// The camera as flights have it.
-    pub(crate) fn pose(&self) -> Pose {
-        self.camera.pose(self.vertical_scale())
-    }
-
-    /// Whether a flight would be recorded from above, after this command.
-    pub(crate) fn is_recording_from_above(&self, command: &str) -> bool {
-        let is_recording = self.flights.recording_s(0.0).is_some();
-        let is_above = self.camera.view().from_above.is_some();
-        if command == "toggle-above" { is_recording } else { is_above }
-    }
-
+    /// Changes settings: JSON with those to change.
     pub(crate) fn change(&mut self, changes: &str) -> Result<(), String> {
-        let changed = self.settings.changed_by(changes)?;
-        let style = changed.look()?;
-        let factor = changed.exaggeration / self.settings.exaggeration;
-        if changed.exaggeration.to_bits() != self.settings.exaggeration.to_bits() {
-            let ground = ground(
-                &self.tiles,
-                &self.settings,
-                self.tileset.package.manifest(),
-                self.height_range_m,
-            );
-            self.camera.rescale_heights(factor, &ground);
-        }
-        self.camera.set_inertia(if changed.inertia { Inertia::On } else { Inertia::Off });
-        if self.loader.read_otherwise(reading_of(&changed, &style)) {
-            self.tiles.begin_again();
-            self.canvas.clear();
+        let (changed, style) = changed(&self.settings, changes)?;
+        let shown = changed.of_session();
+        let reading = Reading::of(&shown.decoder(&style));
+        self.session.change(shown);
+        self.session.styles = style_list(&changed.style, style);
+        self.session.camera.navigator.set_inertia(changed.inertia());
+        if self.loader.read_otherwise(reading) {
+            self.session.begin_again();
+            self.canvas.map.clear();
             self.anew_s = Some(self.last_s);
         }
-        (self.settings, self.style) = (changed, style);
+        self.settings = changed;
         Ok(())
     }
 
-    pub(crate) fn told(&self) -> About {
-        let manifest = self.manifest();
+    /// What is known of the map before anything is drawn.
+    pub(crate) fn about(&self) -> Value {
+        let mut about = self.session.about(&self.labels, self.canvas.gpu());
+        about["src"] = json!(self.address);
+        about["styles"] = json!(tables::style_names());
+        about["bytes"] = json!(self.tileset.package.package().source().file_bytes());
+        about
+    }
+
+    /// Does all of a frame. Returns what the page is told.
+    ///
+    /// # Errors
+    /// When the device is lost or cannot draw.
+    pub(crate) fn next_frame(&mut self, now_s: f64) -> Result<Value, Problem> {
+        self.check_device()?;
+        for defect in self.session.tiles.take_arrivals() {
+            self.warn(defect);
+        }
+        for problem in self.loader.take_problems() {
+            // Its tiles are those of another package now.
+            if problem.kind == "changed" {
+                return Err(problem);
+            }
+            self.warn(format!("Tiles are asked for again. {}", problem.message));
+        }
+        self.last_s = now_s;
+        let (canvas, pixels_per_point) = (&mut self.canvas.map, self.pixels_per_point as f32);
+        let step = self.session.step(canvas, self.size_px, pixels_per_point, now_s);
+        if self.session.tiles.take_first_time_full() {
+            self.warn("The memory for tiles is full: this view is coarser than asked.");
+        }
+        let tiles = &self.session.tiles;
+        let is_there = tiles.missing() == 0 && !step.is_under_way;
+        let is_stuck = tiles.is_full() || self.loader.troubled() > 0;
+        let is_waiting = self
+            .anew_s
+            .is_some_and(|begun_s| !is_there && !is_stuck && now_s - begun_s < MOST_WAIT_S);
+        if !is_waiting {
+            self.anew_s = None;
+        }
+        let is_new = if is_waiting { false } else { self.draw(now_s)? };
+        self.session.look_at_ground(&step.camera, is_new);
+        Ok(self.report(step.is_under_way, now_s))
+    }
+
+    fn check_device(&self) -> Result<(), Problem> {
         let gpu = self.canvas.gpu();
-        let entry = |(label, road): (&String, &RoadStyle)| ClassEntry {
-            label: label.clone(),
-            color: css(road.bands.main_color()),
-        };
-        let boundaries = BoundaryLines::of(manifest, &self.style).into_iter();
-        let line = |lines: BoundaryLines| {
-            let color = css(lines.style.color);
-            ClassEntry { label: lines.label, color }
-        };
-        About {
-            src: self.address.clone(),
-            attribution: manifest.attribution.clone(),
-            bounds: manifest.wgs84_bounds.to_array(),
-            heights: self.height_range_m,
-            tiles: manifest.levels.iter().map(|level| level.tiles).sum(),
-            levels: manifest.levels.len(),
-            styles: tables::style_names(),
-            classes: self.labels.iter().zip(&self.style.roads).map(entry).collect(),
-            boundaries: boundaries.map(line).collect(),
-            has: Has {
-                photo: manifest.settings.photo.is_some(),
-                areas: manifest.areas.is_some(),
-                boundaries: manifest.boundaries.is_some(),
-            },
-            adapter: gpu.adapter_name().to_owned(),
-            is_software: gpu.is_software(),
-            max_side_px: gpu.max_side_px(),
-            format_version: u64::from(FORMAT_VERSION),
-            bytes: self.tileset.package.package().source().file_bytes(),
+        if gpu.is_lost() {
+            return Err(Problem::new(
+                "device-lost",
+                "The graphics device was lost.",
+                "The map is opened again.",
+            ));
         }
-    }
-
-    /// Moves to a place that the page names, as JSON.
-    pub(crate) fn go(&mut self, place: &str, now_s: f64, jump: bool) -> Result<(), String> {
-        let place: ViewRecord = serde_json::from_slice(place.as_bytes())
-            .map_err(|error| format!("the place: {error}"))?;
-        let request = place.request();
-        range::check_camera(request).map_err(|error| error.to_string())?;
-        let view = self.view_at(request).map_err(|error| error.to_string())?;
-        self.placed = None;
-        if jump {
-            self.camera.jump_to(view);
-            self.placed = Some((request, self.camera.view()));
+        let Some(what) = gpu.take_fault() else { return Ok(()) };
+        let (kind, advice) = if what.to_lowercase().contains("memory") {
+            let advice = "Make the map smaller, take fewer samples a pixel, or close other pages.";
+            ("out-of-memory", advice)
         } else {
-            self.camera.travel_to(view, now_s);
-        }
-        Ok(())
-    }
-
-    /// The view of a place, by the ground that is known.
-    fn view_at(&self, request: CameraRequest) -> Result<View, OffGround> {
-        let manifest = self.tileset.package.manifest();
-        let scale = self.vertical_scale();
-        let ground = ground(&self.tiles, &self.settings, manifest, self.height_range_m);
-        let at = request.place(manifest)?;
-        let sighted = SightedGround {
-            extent: MapExtent::of_data(manifest.data_bounds, self.height_range_m),
-            heights_m: self.height_range_m,
-            at_place_m: at.and_then(|at| {
-                let known_m = ground.height(at).map(|height| height / scale);
-                // Before the first tiles are there, any height will do.
-                let [low_m, high_m] = self.height_range_m;
-                let is_inside = manifest.data_bounds.contains(at) && self.tiles.drawn().is_empty();
-                known_m.or_else(|| is_inside.then(|| f64::midpoint(low_m, high_m)))
-            }),
+            ("other", "Reload the page.")
         };
-        view_on(request, manifest, sighted, scale, self.size_px)
+        let message = format!("The graphics device could not do its work: {what}");
+        Err(Problem::new(kind, message, advice))
     }
 
-    /// Looks again at the place that was jumped to, as long as nothing else moves the camera: finer ground has come, at another height.
-    pub(crate) fn place_again(&mut self) {
-        let Some((request, view)) = self.placed.take() else { return };
-        if self.camera.view() != view {
-            return;
+    /// Draws the map. Where the picture is too large for the adapter with so many samples, it is drawn with fewer.
+    fn draw(&mut self, now_s: f64) -> Result<bool, Problem> {
+        let MapSettings { samples_per_side, divider_share, .. } = self.session.settings;
+        let wanted = samples_per_side.min(self.canvas.map.most_samples(self.size_px));
+        self.is_hurried = self.session.is_hurrying(&self.canvas.map, now_s) && wanted > 1;
+        let samples = if self.is_hurried { 1 } else { wanted };
+        let scene = self.session.scene(self.size_px, samples);
+        let revision = u64::from(divider_share.to_bits());
+        self.canvas.draw(&MapScene { revision, ..scene }, divider_share)
+    }
+
+    /// What the page is told of the frame.
+    fn report(&mut self, is_under_way: bool, now_s: f64) -> Value {
+        // A picture that was drawn in a hurry is drawn again at rest.
+        let is_busy = is_under_way || self.is_hurried || self.anew_s.is_some();
+        // Nothing is to be waited for from a server that gives no tiles.
+        let rest = FrameRest { is_busy, troubled: self.loader.troubled() };
+        let counts = self.canvas.map.counts();
+        let (mut report, is_settled) =
+            self.session.report(counts, rest, self.pixels_per_point, now_s);
+        let traffic = self.tileset.package.package().source().traffic();
+        report["requests"] = json!(traffic.requests);
+        report["bytes"] = json!(traffic.bytes);
+        report["notices"] = Value::Array(std::mem::take(&mut self.notices));
+        if is_settled {
+            self.session.settle();
+            self.loader.end_foresight();
         }
-        if let Ok(again) = self.view_at(request)
-            && again != view
-        {
-            self.camera.jump_to(again);
-        }
-        self.placed = Some((request, self.camera.view()));
-    }
-
-    /// The ground at a pixel: where it is, the tile that is drawn there, and how far beside a road it may be picked, working metres.
-    pub(crate) fn ground_at(
-        &self,
-        at_px: DVec2,
-    ) -> Option<(GroundPlace, Option<TileId>, [f64; 2], f64)> {
-        let manifest = self.manifest();
-        let ground = ground(&self.tiles, &self.settings, manifest, self.height_range_m);
-        let camera = self.camera.view().camera(self.size_px);
-        let hit = ground.hit(camera.ray_start_in_world(at_px), camera.ray_in_world(at_px))?;
-        let (_, depth_m) = camera.project(hit)?;
-        let at_m = [hit.x, hit.y];
-        let [lon, lat] = manifest.coordinates.wgs84_from_working(at_m);
-        let place = GroundPlace { lon, lat, height: hit.z / self.vertical_scale() };
-        let tile = self
-            .tiles
-            .drawn()
-            .iter()
-            .map(|drawn| drawn.id)
-            .find(|id| manifest.frame.tile_bounds(*id).contains(at_m));
-        let reach_m = PICK_POINTS * self.pixels_per_point * camera.pixel_at_depth_m(depth_m);
-        Some((place, tile, at_m, reach_m))
+        report
     }
 }
 
-/// The ground as the controls see it.
-pub(crate) fn ground<'a>(
-    tiles: &'a Tiles,
-    settings: &Settings,
-    manifest: &Manifest,
-    height_range_m: [f64; 2],
-) -> ShownGround<'a> {
-    tiles.ground(settings.exaggeration * manifest.point_scale, height_range_m)
+/// Settings with some of them changed, as JSON says, and their style.
+///
+/// # Errors
+/// In words, when a value cannot be, or there is no such style.
+pub(crate) fn changed(
+    settings: &SettingsRecord,
+    changes: &str,
+) -> Result<(SettingsRecord, Style), String> {
+    let changed = settings.changed_by(changes)?;
+    let style = tables::style(&changed.style)?;
+    Ok((changed, style))
 }
 
-/// What is read of tiles for these settings.
-pub(crate) fn reading_of(settings: &Settings, style: &Style) -> Reading {
-    let decoder = match settings.compare {
-        Compare::Off => TileDecoder::default().for_look(settings.road_options().method, style),
-        Compare::Split | Compare::Difference => TileDecoder::default().with_layers_of(style),
-    };
-    Reading::of(&decoder)
-}
-
-/// How fine the ground is to be.
-pub(crate) fn fineness_of(settings: &Settings) -> Fineness {
-    Fineness {
-        screen_space_error_px: settings.error_px,
-        cell_px: settings.cell_px.unwrap_or(f64::INFINITY),
-    }
+/// A style as the one that a session can choose.
+pub(crate) fn style_list(name: &str, style: Style) -> StyleList {
+    StyleList::new(vec![NamedStyle { name: name.to_owned(), style }], None)
 }
 
 /// A size that the adapter can draw with one sample a pixel.
 pub(crate) fn clamped(size_px: [u32; 2], most_px: u32) -> [u32; 2] {
     size_px.map(|side| side.clamp(1, most_px))
-}
-
-pub(crate) fn css(color: Rgb) -> String {
-    let [r, g, b] = color.map(|part| (part * 255.0).round() as u8);
-    format!("#{r:02x}{g:02x}{b:02x}")
 }

@@ -1,39 +1,31 @@
 //! Opening a map: a device, the first bytes, the first tiles.
 
-use std::{rc::Rc, sync::Arc};
+use std::{collections::BTreeMap, rc::Rc, sync::Arc};
 
 use corniche_geom::TileId;
 use corniche_live::{
-    CameraControl, GroundProbe, Tiles,
-    controls::{Inertia, Navigator, View},
-    first_view, limits,
+    FirstLook, KnownTiles, MapSettings, Session, SessionStart, SettingChanges, SettingsRecord,
+    ViewRecord, controls::View, first_view, foreseen,
 };
 use corniche_styles::Style;
 use corniche_tileset::{Manifest, OpenError, Package};
 use corniche_viewer::{
-    CameraRequest, SightedGround,
-    lod::Quality,
-    range,
+    CameraRequest, OffGround, SightedGround, range,
     stream::StreamBudget,
-    tiles::{MapPackage as _, PackageTiles, TileCatalog},
+    tiles::{MapPackage, PackageTiles, TileCatalog as _, TileGeometry, may_have_roads},
 };
-use futures_util::future::try_join;
+use futures_util::future::{join_all, try_join};
 use web_sys::HtmlCanvasElement;
 
-use crate::map::{Map, clamped, fineness_of, reading_of};
 use crate::{
     canvas::PageCanvas,
-    decoders::Decoders,
-    first_tiles::{first_tiles, off_ground},
-    flights::Flights,
-    foresight::foreseen,
+    decoders::{Decoders, Reading},
     host::Host,
     loader::{PageLoader, Tileset},
+    map::{Map, clamped, style_list},
     problem::Problem,
-    settings::{Changes, Settings},
     source::WebSource,
     tables,
-    view_record::{ViewRecord, view_on},
 };
 
 /// What may be done in a frame and kept, unless the page says otherwise.
@@ -45,7 +37,7 @@ const BUDGET: StreamBudget =
 #[serde(default, deny_unknown_fields)]
 struct Options {
     /// The settings that are not the usual ones.
-    settings: Changes,
+    settings: SettingChanges,
     /// Where to look; without it, where the roads are.
     view: Option<ViewRecord>,
     /// Pixels at the right that are covered by a panel.
@@ -67,15 +59,15 @@ fn shared(package: PackageTiles<WebSource>) -> Arc<PackageTiles<WebSource>> {
 }
 
 /// What is asked of the first view.
-struct FirstLook<'a> {
-    settings: &'a Settings,
+struct FirstViewRequest<'a> {
+    settings: &'a MapSettings,
     style: &'a Style,
     request: CameraRequest,
     /// Pixels at the right that are covered by a panel.
     covered_px: u32,
 }
 
-impl FirstLook<'_> {
+impl FirstViewRequest<'_> {
     /// The view itself.
     fn view(
         &self,
@@ -84,14 +76,20 @@ impl FirstLook<'_> {
         size_px: [u32; 2],
     ) -> Result<View, Problem> {
         let scale = self.settings.exaggeration * manifest.point_scale;
-        match self.request {
-            CameraRequest::FromAbove { .. } => {
-                view_on(self.request, manifest, ground, scale, size_px)
-            }
-            _ => first_view(self.request, manifest, ground, scale, size_px, self.covered_px),
-        }
-        .map_err(|error| off_ground(&error))
+        first_view(self.request, manifest, ground, scale, size_px, self.covered_px)
+            .map_err(|error| off_ground(&error))
     }
+}
+
+/// A place without ground, in words.
+fn off_ground(error: &OffGround) -> Problem {
+    let advice = "Leave the place out, or name one that the package covers.";
+    Problem::new("off-ground", error.to_string(), advice)
+}
+
+/// A package without ground, in words.
+fn no_ground(message: &str) -> Problem {
+    Problem::new("no-ground", message, "Build it from a DEM that has heights.")
 }
 
 /// A package that was opened, and what the first view needs of it.
@@ -108,7 +106,7 @@ impl Opened {
     async fn new(
         address: &str,
         host: &Host,
-        look: &FirstLook<'_>,
+        first: &FirstViewRequest<'_>,
         size_px: [u32; 2],
     ) -> Result<Self, Problem> {
         let source = WebSource::open(address, host).await?;
@@ -117,28 +115,55 @@ impl Opened {
         let metadata = package.metadata().await.map_err(|error| told(&error))?;
         let package = shared(PackageTiles::new(package).await.map_err(|error| told(&error))?);
         if !package.exists(TileId::ROOT) {
-            return Err(Problem::new(
-                "no-ground",
-                "The package has no tiles.",
-                "Build it from a DEM that has heights.",
-            ));
+            return Err(no_ground("The package has no tiles."));
         }
         let manifest = package.manifest();
         let decoders = Decoders::new(host.clone(), &metadata);
         let tileset = Rc::new(Tileset { package: Arc::clone(&package), decoders });
-        let reading = reading_of(look.settings, look.style);
-        let first = first_tiles(&tileset, look.request, &reading).await?;
-        let home = look.view(manifest, first.ground, size_px)?;
-        let settings = look.settings;
-        let (fineness, roads) = (fineness_of(settings), settings.road_options());
-        let quality =
-            Quality::of_package(manifest, fineness, look.style, roads, settings.exaggeration);
-        let loader = PageLoader::new(Rc::clone(&tileset), host.clone(), reading, first.tiles);
-        let camera = home.camera(size_px);
-        let heights_m = first.ground.heights_m;
-        loader.foresee(&foreseen(package.as_ref(), manifest, heights_m, &camera, quality));
-        Ok(Self { tileset, loader, ground: first.ground, home })
+        let FirstViewRequest { settings, style, .. } = *first;
+        let reading = Reading::of(&settings.decoder(style));
+        let (ready, ground) = first_tiles(&tileset, first.request, &reading).await?;
+        let home = first.view(manifest, ground, size_px)?;
+        let loader = PageLoader::new(Rc::clone(&tileset), host.clone(), reading, ready);
+        let (camera, quality) = (home.camera(size_px), settings.quality(manifest, style));
+        loader.foresee(&foreseen(package.as_ref(), ground.heights_m, &camera, quality));
+        Ok(Self { tileset, loader, ground, home })
     }
+}
+
+/// Loads what the camera of the first view needs: tiles, and the ground that they have.
+async fn first_tiles(
+    tileset: &Tileset,
+    camera: CameraRequest,
+    reading: &Reading,
+) -> Result<(BTreeMap<TileId, TileGeometry>, SightedGround), Problem> {
+    let package = tileset.package.as_ref();
+    let manifest = package.manifest();
+    let place = camera.place(manifest).map_err(|error| off_ground(&error))?;
+    let mut there = BTreeMap::new();
+    // All tiles above the place are needed, and asked for at once; else each would wait for the one above it.
+    let mut wanted = place.map_or_else(|| vec![TileId::ROOT], |at| package.tiles_at(at));
+    loop {
+        let loads = wanted.iter().map(|id| tileset.load(*id, reading));
+        for tile in join_all(loads).await {
+            let tile = tile.map_err(|error| tileset.problem_of(&error))?;
+            there.insert(tile.id, tile);
+        }
+        let may_have_roads = may_have_roads(manifest, reading.sections);
+        let known = KnownTiles { package, there: &there, may_have_roads };
+        match known.look(camera, place).map_err(|error| Problem::other(&error))? {
+            FirstLook::Wanted(ids) => wanted = ids,
+            FirstLook::Known(Some(ground)) => return Ok((there, ground)),
+            FirstLook::Known(None) => {
+                return Err(no_ground("The package has no ground to show."));
+            }
+        }
+    }
+}
+
+/// The page asks for what cannot be.
+fn wrong(why: String) -> Problem {
+    Problem::new("other", why, "Correct the page.")
 }
 
 /// Opens a package and finds the first view.
@@ -151,57 +176,58 @@ pub(crate) async fn open(
     options: &str,
     host: Host,
 ) -> Result<Map, Problem> {
-    let wrong = |why: String| Problem::new("other", why, "Correct the page.");
     let options: Options =
         serde_json::from_slice(if options.is_empty() { b"{}" } else { options.as_bytes() })
             .map_err(|error| wrong(format!("options: {error}")))?;
-    let settings = Settings::default().changed(&options.settings).map_err(wrong)?;
+    let record = SettingsRecord::default().changed(options.settings).map_err(wrong)?;
+    let settings = record.of_session();
     let request = options.view.map_or(CameraRequest::Overview, |place| place.request());
     range::check_camera(request).map_err(|error| wrong(error.to_string()))?;
-    let style = settings.look().map_err(wrong)?;
+    let style = tables::style(&record.style).map_err(wrong)?;
     let asked_px = options.size_px.unwrap_or([canvas.width(), canvas.height()]);
-    let first_look =
-        FirstLook { settings: &settings, style: &style, request, covered_px: options.covered_px };
+    let first = FirstViewRequest {
+        settings: &settings,
+        style: &style,
+        request,
+        covered_px: options.covered_px,
+    };
     // The device is waited for while the package is read.
-    let opened = Opened::new(&address, &host, &first_look, asked_px);
-    let (page_canvas, opened) = try_join(PageCanvas::new(canvas), opened).await?;
+    let opened = Box::pin(Opened::new(&address, &host, &first, asked_px));
+    let (canvas, opened) = try_join(PageCanvas::new(canvas), opened).await?;
     let Opened { tileset, loader, ground, home } = opened;
-    let package = &tileset.package;
-    let manifest = package.manifest();
-    let size_px = clamped(asked_px, page_canvas.gpu().max_side_px());
-    let home =
-        if size_px == asked_px { home } else { first_look.view(manifest, ground, size_px)? };
-    let heights_m = ground.heights_m;
-    let inertia = if settings.inertia { Inertia::On } else { Inertia::Off };
-    let navigator = Navigator::new(home, limits(manifest), size_px, inertia);
+    let manifest = tileset.package.manifest();
+    let size_px = clamped(asked_px, canvas.gpu().max_side_px());
+    let home = if size_px == asked_px { home } else { first.view(manifest, ground, size_px)? };
     let pixels_per_point = options.pixels_per_point.unwrap_or(1.0);
-    let budget =
-        StreamBudget { gpu_bytes: options.gpu_bytes.unwrap_or(BUDGET.gpu_bytes), ..BUDGET };
-    let catalog: Arc<dyn TileCatalog> = Arc::<PackageTiles<WebSource>>::clone(package);
-    let tiles = Tiles::new(catalog, manifest.vertical.quantum_m, Box::new(loader.clone()), budget);
-    let settings_record = &manifest.settings;
-    let labels = settings_record
+    let package: Arc<dyn MapPackage> = Arc::<PackageTiles<WebSource>>::clone(&tileset.package);
+    let labels = manifest
+        .settings
         .recorded_labels()
-        .unwrap_or_else(|| tables::class_labels(&settings_record.frc_table));
+        .unwrap_or_else(|| tables::class_labels(&manifest.settings.frc_table));
+    let session = Session::new(SessionStart {
+        package,
+        height_range_m: ground.heights_m,
+        home,
+        settings,
+        styles: style_list(&record.style, style),
+        loader: Box::new(loader.clone()),
+        budget: StreamBudget { gpu_bytes: options.gpu_bytes.unwrap_or(BUDGET.gpu_bytes), ..BUDGET },
+        size_px,
+        pixels_per_point: pixels_per_point as f32,
+        inertia: record.inertia(),
+    });
     Ok(Map {
         address,
-        canvas: page_canvas,
+        canvas,
         loader,
-        tiles,
-        camera: CameraControl::new(navigator, pixels_per_point as f32),
-        settings,
-        style,
+        session,
+        settings: record,
         labels,
-        height_range_m: heights_m,
         size_px,
         pixels_per_point,
-        probe: GroundProbe::default(),
-        cursor_px: None,
-        flights: Flights::default(),
         notices: Vec::new(),
         is_hurried: false,
         anew_s: None,
-        placed: None,
         last_s: 0.0,
         tileset,
     })

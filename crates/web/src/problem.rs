@@ -1,7 +1,8 @@
-//! What went wrong, for programs and for people.
+//! What went wrong, for programs and for people, and values as JavaScript has them.
 
-use std::{error::Error, fmt::Write as _};
+use std::error::Error;
 
+use corniche_live::formatting::with_causes;
 use corniche_tileset::OpenError;
 use corniche_viewer::gpu::GpuError;
 use wasm_bindgen::JsValue;
@@ -67,28 +68,28 @@ impl Problem {
 
 impl From<Problem> for JsValue {
     fn from(problem: Problem) -> Self {
-        let object = js_sys::Object::new();
-        for (name, value) in [
-            ("kind", problem.kind),
-            ("message", problem.message.as_str()),
-            ("advice", problem.advice.as_str()),
-        ] {
-            // Setting a field of an object of one's own cannot fail.
-            let _ = js_sys::Reflect::set(&object, &name.into(), &value.into());
-        }
-        object.into()
+        object(&[
+            ("kind", problem.kind.into()),
+            ("message", problem.message.into()),
+            ("advice", problem.advice.into()),
+        ])
     }
 }
 
-/// An error and its causes in one line.
-pub(crate) fn with_causes(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut next = error.source();
-    while let Some(cause) = next {
-        let _ = write!(text, ": {cause}");
-        next = cause.source();
+/// An object of JavaScript with these fields.
+pub(crate) fn object(fields: &[(&str, JsValue)]) -> JsValue {
+    let object = js_sys::Object::new();
+    for (name, value) in fields {
+        // Setting a field of an object of one's own cannot fail.
+        let _ = js_sys::Reflect::set(&object, &(*name).into(), value);
     }
-    text
+    object.into()
+}
+
+/// A value of this crate as JSON.
+pub(crate) fn json(value: &impl serde::Serialize) -> String {
+    // These values have text keys and finite numbers only, so there is always a text.
+    serde_json::to_string(value).unwrap_or_default()
 }
 
 /// What JavaScript threw, in words.

@@ -2,10 +2,10 @@
 
 use std::{
     cell::{Cell, RefCell},
-    collections::BTreeMap,
     rc::Rc,
 };
 
+use corniche_live::{RangeCache, merged_ranges};
 use corniche_tileset::{ByteSource, SourceError};
 use futures_channel::oneshot;
 use wasm_bindgen_futures::spawn_local;
@@ -13,14 +13,10 @@ use web_sys::AbortController;
 
 use crate::{
     fetch::{UNREACHABLE, diagnosed, range, sent},
-    host::Host,
-    merging::merged,
+    host::{Host, pause},
     problem::Problem,
-    timer::pause,
 };
 
-/// What is kept of what was read.
-const CACHE_BYTES: usize = 64 << 20;
 /// What failed on its way is asked for again so often.
 const TRIES: u32 = 3;
 
@@ -47,7 +43,7 @@ struct Shared {
     address: String,
     file_bytes: u64,
     version: Option<String>,
-    cache: RefCell<Cache>,
+    cache: RefCell<RangeCache>,
     waiting: RefCell<Vec<Waiting>>,
     traffic: Cell<Traffic>,
     /// The last thing that went wrong: errors of reading have no kind.
@@ -88,62 +84,6 @@ impl Drop for Leaving {
     }
 }
 
-/// Ranges that were read, by their first byte.
-#[derive(Default)]
-struct Cache {
-    ranges: BTreeMap<u64, (Rc<[u8]>, u64)>,
-    bytes: usize,
-    clock: u64,
-}
-
-impl Cache {
-    /// What there is of some bytes, from the first of them on; maybe nothing. They may lie in several ranges.
-    fn get(&mut self, offset: u64, length: usize) -> Vec<u8> {
-        let mut found = Vec::new();
-        while found.len() < length {
-            let more = self.get_in_one(offset + found.len() as u64, length - found.len());
-            if more.is_empty() {
-                break;
-            }
-            found.extend(more);
-        }
-        found
-    }
-
-    /// The same, as far as one range has them.
-    fn get_in_one(&mut self, offset: u64, length: usize) -> Vec<u8> {
-        self.clock += 1;
-        let Some((from, (bytes, used))) = self.ranges.range_mut(..=offset).next_back() else {
-            return Vec::new();
-        };
-        let behind = usize::try_from(offset - from).ok().and_then(|at| bytes.get(at..));
-        let found = behind.map(|behind| behind[..length.min(behind.len())].to_vec());
-        let found = found.unwrap_or_default();
-        if !found.is_empty() {
-            *used = self.clock;
-        }
-        found
-    }
-
-    fn put(&mut self, offset: u64, bytes: Rc<[u8]>) {
-        self.clock += 1;
-        self.bytes += bytes.len();
-        if let Some((old, _)) = self.ranges.insert(offset, (bytes, self.clock)) {
-            self.bytes -= old.len();
-        }
-        while self.bytes > CACHE_BYTES && self.ranges.len() > 1 {
-            let Some(oldest) =
-                self.ranges.iter().min_by_key(|(_, (_, used))| *used).map(|(at, _)| *at)
-            else {
-                return;
-            };
-            if let Some((old, _)) = self.ranges.remove(&oldest) {
-                self.bytes -= old.len();
-            }
-        }
-    }
-}
-
 impl WebSource {
     /// Takes the beginning of the file, which the page has asked for, and asks again where it was lost.
     ///
@@ -168,7 +108,7 @@ impl WebSource {
             }
         };
         let traffic = Traffic { requests: tries, bytes: head.bytes.len() as u64 };
-        let mut cache = Cache::default();
+        let mut cache = RangeCache::default();
         cache.put(0, head.bytes.into());
         Ok(Self(Rc::new(Shared {
             address: address.to_owned(),
@@ -209,7 +149,7 @@ impl Shared {
         let waiting = self.waiting.take();
         let ranges: Vec<[u64; 2]> = waiting.iter().map(|one| [one.offset, one.length]).collect();
         let mut waiting: Vec<Option<Waiting>> = waiting.into_iter().map(Some).collect();
-        for group in merged(&ranges) {
+        for group in merged_ranges(&ranges) {
             let group: Vec<Waiting> =
                 group.into_iter().filter_map(|place| waiting[place].take()).collect();
             let shared = Rc::clone(self);

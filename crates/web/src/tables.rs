@@ -26,9 +26,16 @@ pub(crate) fn style_names() -> Vec<String> {
 }
 
 /// The style of this name, among those of the program and those that the page keeps.
-pub(crate) fn style(name: &str) -> Option<Style> {
+///
+/// # Errors
+/// In words, when there is no such style.
+pub(crate) fn style(name: &str) -> Result<Style, String> {
     let own = OWN.with_borrow(Clone::clone);
-    table(STYLES).into_iter().chain(own).find(|(known, _)| known == name).map(|(_, style)| style)
+    let found = table(STYLES).into_iter().chain(own).find(|(known, _)| known == name);
+    found.map(|(_, style)| style).ok_or_else(|| {
+        let names = style_names().join(", ");
+        format!("there is no style {name:?}; there are {names}")
+    })
 }
 
 /// Keeps the styles of a table that `corniche-web-styles` has made, in place of those of the same names.

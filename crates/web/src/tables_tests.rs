@@ -10,9 +10,10 @@ fn styles_are_those_of_the_program() {
     assert_eq!(style_names(), names);
     for name in names {
         let text = style_preset(name).unwrap();
-        assert_eq!(style(name), Some(parse_style(text).unwrap()), "{name}");
+        assert_eq!(style(name), Ok(parse_style(text).unwrap()), "{name}");
     }
-    assert_eq!(style("neon"), None);
+    let why = style("neon").unwrap_err();
+    assert!(why.contains("there is no style \"neon\"; there are road-atlas"), "{why}");
 }
 
 #[test]
@@ -26,15 +27,15 @@ fn an_own_style_is_kept_by_its_address_until_it_comes_anew() {
     let [dark, relief] = ["dark", "relief"].map(|name| parse_style(style_preset(name).unwrap()));
     let (dark, relief) = (dark.unwrap(), relief.unwrap());
     let address = "styles/mine.toml";
-    assert_eq!(style(address), None);
+    assert!(style(address).is_err());
     for text in ["dark", "relief"] {
         keep(&corniche_web_styles::style_table(address, style_preset(text).unwrap()).unwrap())
             .unwrap();
         let expected = if text == "dark" { &dark } else { &relief };
-        assert_eq!(style(address).as_ref(), Some(expected));
+        assert_eq!(style(address).as_ref(), Ok(expected));
     }
     let damaged = keep(&[7, 0, 0, 0, 0, 0, 0, 0, 1]).unwrap_err();
     assert!(damaged.contains("different versions"), "{damaged}");
-    assert_eq!(style(address), Some(relief), "the one before stays");
+    assert_eq!(style(address), Ok(relief), "the one before stays");
     assert!(!style_names().contains(&address.to_owned()), "it does not come with the program");
 }

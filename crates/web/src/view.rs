@@ -3,11 +3,10 @@
 use std::rc::Rc;
 
 use corniche_live::{
+    PickPlace, SettingsRecord,
     controls::{Button, Input, Key, KeyState, Mode, Modifiers},
-    place_in_world,
 };
-use corniche_roads::{FunctionalRoadClass, RoadAttributes};
-use corniche_viewer::tiles::MapPackage as _;
+use corniche_viewer::{gpu::ReadBackError, tiles::MapPackage as _};
 use glam::DVec2;
 use js_sys::{Promise, Uint8Array};
 use wasm_bindgen::{JsValue, prelude::wasm_bindgen};
@@ -15,15 +14,11 @@ use wasm_bindgen_futures::future_to_promise;
 use web_sys::HtmlCanvasElement;
 
 use crate::{
-    host::Host,
-    map::{Map, clamped, ground},
+    host::{Host, pause},
+    map::{Map, changed, clamped},
     open::open,
-    pick::road_at,
-    problem::Problem,
-    report::{Notice, Pick, json},
-    settings::Settings,
+    problem::{Problem, json},
     tables,
-    timer::pause,
 };
 
 /// A map on a canvas. All positions are pixels of the canvas, all times seconds of one clock.
@@ -48,13 +43,13 @@ impl MapView {
     /// The usual settings, as JSON.
     #[must_use]
     pub fn usual_settings() -> String {
-        json(&Settings::default())
+        json(&SettingsRecord::default())
     }
 
     /// Whether the usual settings could be changed so: JSON as for `set`. Returns an empty text, or why not.
     #[must_use]
     pub fn fault_of(settings: &str) -> String {
-        Settings::default().changed_by(settings).err().unwrap_or_default()
+        changed(&SettingsRecord::default(), settings).err().unwrap_or_default()
     }
 
     /// Keeps an own style for all maps of the page, under the address of its file; `table` is from the module for own styles. Returns an empty
@@ -88,50 +83,48 @@ impl MapView {
 
     /// A button goes down: 0 left, 1 middle, 2 right.
     pub fn press(&mut self, button: u8, x: f64, y: f64, shift: bool, control: bool, now_s: f64) {
-        self.0.take_over();
-        let Some(button) = button_of(button) else { return };
-        let ground = ground(
-            &self.0.tiles,
-            &self.0.settings,
-            self.0.tileset.package.manifest(),
-            self.0.height_range_m,
-        );
-        self.0.camera.press(button, DVec2::new(x, y), Modifiers { shift, control }, now_s, &ground);
+        self.0.session.take_over();
+        if let Some(button) = button_of(button) {
+            let modifiers = Modifiers { shift, control };
+            self.0.session.press(button, DVec2::new(x, y), modifiers, now_s);
+        }
     }
 
     /// The pointer is here.
     pub fn move_to(&mut self, x: f64, y: f64, now_s: f64) {
-        self.0.cursor_px = Some(DVec2::new(x, y));
-        self.0.input(&Input::Move { at_px: DVec2::new(x, y) }, now_s);
+        self.0.session.cursor_px = Some(DVec2::new(x, y));
+        self.0.session.input(&Input::Move { at_px: DVec2::new(x, y) }, now_s);
     }
 
     /// A button goes up.
     pub fn release(&mut self, button: u8, now_s: f64) {
         if let Some(button) = button_of(button) {
-            self.0.input(&Input::Release { button }, now_s);
+            self.0.session.input(&Input::Release { button }, now_s);
         }
     }
 
     /// The pointer is outside.
     pub fn leave(&mut self) {
-        self.0.cursor_px = None;
+        self.0.session.cursor_px = None;
     }
 
     /// The wheel turns by so many notches; positive zooms in.
     pub fn wheel(&mut self, steps: f64, x: f64, y: f64, now_s: f64) {
-        self.0.take_over();
-        self.0.input(&Input::Wheel { steps, at_px: DVec2::new(x, y) }, now_s);
+        self.0.session.take_over();
+        self.0.session.input(&Input::Wheel { steps, at_px: DVec2::new(x, y) }, now_s);
     }
 
     /// Two fingers touch the map, or are elsewhere now.
     pub fn two_fingers(&mut self, ax: f64, ay: f64, bx: f64, by: f64, now_s: f64) {
-        self.0.take_over();
-        self.0.input(&Input::TwoFingers { at_px: [DVec2::new(ax, ay), DVec2::new(bx, by)] }, now_s);
+        self.0.session.take_over();
+        self.0
+            .session
+            .input(&Input::TwoFingers { at_px: [DVec2::new(ax, ay), DVec2::new(bx, by)] }, now_s);
     }
 
     /// Less than two fingers touch the map.
     pub fn end_two_fingers(&mut self, now_s: f64) {
-        self.0.input(&Input::EndTwoFingers, now_s);
+        self.0.session.input(&Input::EndTwoFingers, now_s);
     }
 
     /// A key goes down or up, by its `KeyboardEvent.code`. Returns whether it means something here.
@@ -145,62 +138,57 @@ impl MapView {
     ) -> bool {
         let modifiers = Modifiers { shift, control };
         if code.starts_with("Shift") || code.starts_with("Control") {
-            self.0.input(&Input::Modify { modifiers }, now_s);
+            self.0.session.input(&Input::Modify { modifiers }, now_s);
             return false;
         }
-        let Some(key) = key_of(code) else { return false };
-        let is_flying = matches!(
-            key,
-            Key::Ahead | Key::Back | Key::StrafeLeft | Key::StrafeRight | Key::Rise | Key::Sink
-        );
-        if control || (is_flying && self.0.camera.mode() == Mode::Map) {
+        let Some(key) = Key::of_code(code) else { return false };
+        let is_map_mode = self.0.session.camera.navigator.mode() == Mode::Map;
+        if control || (key.is_for_flying() && is_map_mode) {
             return false;
         }
         if is_down {
-            self.0.take_over();
+            self.0.session.take_over();
         }
         let state = if is_down { KeyState::Pressed } else { KeyState::Released };
-        self.0.input(&Input::Key { key, state, modifiers }, now_s);
+        self.0.session.input(&Input::Key { key, state, modifiers }, now_s);
         true
     }
 
     /// All keys and buttons count as released.
     pub fn let_go(&mut self, now_s: f64) {
-        self.0.input(&Input::LetGo, now_s);
+        self.0.session.input(&Input::LetGo, now_s);
     }
 
     /// Does what a button of the page asks for: `north-up`, `reset`, `toggle-fly`, `toggle-above`, `start-recording`, `stop-recording`. The last
     /// returns the flight as JSON with the fields of its TOML, others an empty text.
     pub fn command(&mut self, name: &str, now_s: f64) -> String {
-        self.0.take_over();
+        self.0.session.take_over();
         match name {
-            "north-up" => self.0.input(&Input::NorthUp, now_s),
-            "reset" => self.0.input(&Input::Reset, now_s),
-            "toggle-fly" => self.0.input(&Input::ToggleFly, now_s),
-            "toggle-above" | "start-recording" if self.0.is_recording_from_above(name) => {
-                self.0
-                    .notices
-                    .push(Notice::told("Flights are recorded in perspective: not from above."));
-            }
-            "toggle-above" => self.0.input(&Input::ToggleAbove, now_s),
-            "start-recording" => self.0.flights.start_recording(now_s, self.0.pose()),
-            "stop-recording" => {
-                match self.0.flights.stop_recording(now_s, self.0.tileset.package.manifest()) {
-                    Ok(text) => return text,
-                    Err(why) => self.0.notices.push(Notice::warning(why)),
+            "north-up" => self.0.session.input(&Input::NorthUp, now_s),
+            "reset" => self.0.session.input(&Input::Reset, now_s),
+            "toggle-fly" => self.0.session.input(&Input::ToggleFly, now_s),
+            "toggle-above" | "start-recording" => {
+                let session = &mut self.0.session;
+                let is_done = match name {
+                    "toggle-above" => session.toggle_above(now_s),
+                    _ => session.start_recording(now_s),
+                };
+                if !is_done {
+                    self.0.tell("Flights are recorded in perspective: not from above.");
                 }
             }
-            other => {
-                self.0.notices.push(Notice::warning(format!("There is no command {other:?}.")));
-            }
+            "stop-recording" => match self.0.session.stop_recording(now_s) {
+                Ok(text) => return text,
+                Err(why) => self.0.warn(why),
+            },
+            other => self.0.warn(format!("There is no command {other:?}.")),
         }
         String::new()
     }
 
     /// Plays a flight, JSON with the fields of its TOML; returns an empty text, or why not.
     pub fn play(&mut self, flight: &str, now_s: f64) -> String {
-        let played = self.0.flights.play(flight, now_s, self.0.tileset.package.manifest());
-        played.err().unwrap_or_default()
+        self.0.session.play(flight, now_s).err().unwrap_or_default()
     }
 
     /// Changes settings: a JSON object with those to change. Returns an empty text, or why not.
@@ -215,101 +203,58 @@ impl MapView {
 
     /// What is known of the package and the graphics adapter, as JSON.
     pub fn about(&self) -> String {
-        json(&self.0.told())
+        json(&self.0.about())
     }
 
     /// Looks at a place, at once or by a flight there: JSON. Returns an empty text, or why not.
     pub fn look_at(&mut self, place: &str, now_s: f64, jump: bool) -> String {
-        self.0.take_over();
-        self.0.go(place, now_s, jump).err().unwrap_or_default()
+        self.0.session.take_over();
+        let gone = self.0.session.go_to_record(place, self.0.size_px, jump, now_s);
+        gone.err().unwrap_or_default()
     }
 
     /// Looks at a place as people write it: `9.52,47.14`. Returns an empty text, or why not.
     pub fn go_to(&mut self, lon_lat: &str, now_s: f64) -> String {
-        let manifest = self.0.tileset.package.manifest();
-        let ground = ground(&self.0.tiles, &self.0.settings, manifest, self.0.height_range_m);
-        match place_in_world(lon_lat, manifest, &ground) {
-            Ok(target_in_world) => {
-                self.0.take_over();
-                self.0.input(&Input::GoTo { target_in_world }, now_s);
-                String::new()
-            }
-            Err(why) => why,
-        }
+        self.0.session.go_to(lon_lat, now_s).err().unwrap_or_default()
     }
 
     /// What is at a pixel: a promise of JSON, `null` over the sky.
     pub fn pick(&self, x: f64, y: f64) -> Promise {
-        let Some((at, tile, at_m, reach_m)) = self.0.ground_at(DVec2::new(x, y)) else {
+        let Some(place) = self.0.session.pick_at(DVec2::new(x, y), self.0.size_px) else {
             return future_to_promise(async { Ok("null".into()) });
         };
-        let (tileset, labels, style) =
-            (Rc::clone(&self.0.tileset), self.0.labels.clone(), self.0.style.clone());
-        let point_scale = tileset.package.manifest().point_scale;
-        let classes = self.0.settings.road_options().classes;
+        let (tileset, labels) = (Rc::clone(&self.0.tileset), self.0.labels.clone());
         future_to_promise(async move {
-            let half_width_m = |class: FunctionalRoadClass, attributes: &RoadAttributes| {
-                let width_m = f64::from(style.width_of_m(class, attributes));
-                classes.contains(class).then_some(width_m * point_scale / 2.0)
-            };
-            let road = match tile {
-                Some(tile) => road_at(&tileset, tile, at_m, reach_m, &half_width_m, &labels).await,
-                None => Ok(None),
-            };
-            let road = road.map_err(|error| JsValue::from(tileset.problem_of(&error)))?;
-            Ok(json(&Pick { at, road }).into())
+            let package = &tileset.package;
+            let told = |error| JsValue::from(tileset.problem_of(&error));
+            let mut road = None;
+            if let Some(tile) = place.tile
+                && let Some(bytes) =
+                    package.payload_for(tile, PickPlace::SECTIONS).await.map_err(told)?
+            {
+                road = place.road_in(&bytes, tile, package.manifest()).map_err(told)?;
+            }
+            Ok(json(&place.record(road, &labels)).into())
         })
     }
 
     /// The pixels that are shown: a promise of bytes, four a pixel, rows from the top.
     pub fn read_pixels(&self) -> Promise {
-        let (parts, gpu, width) = (
-            self.0.canvas.begin_read(),
-            Rc::clone(self.0.canvas.gpu()),
-            self.0.canvas.shown_width_px() as usize,
-        );
+        let (reading, gpu) = (self.0.canvas.begin_read(), Rc::clone(self.0.canvas.map.gpu()));
         future_to_promise(async move {
-            let told = |error| JsValue::from(Problem::other(&error));
-            let mut picture: Vec<u8> = Vec::new();
-            for (mut read, columns) in parts {
-                while !read.has_arrived(&gpu).map_err(told)? {
-                    pause(5.0).await;
-                }
-                let texels = read.into_texels(&gpu).map_err(told)?;
-                if picture.is_empty() {
-                    picture = texels;
-                    continue;
-                }
-                let columns = 4 * columns.start as usize..4 * columns.end as usize;
-                for (row, from) in
-                    picture.chunks_exact_mut(4 * width).zip(texels.chunks_exact(4 * width))
-                {
-                    row[columns.clone()].copy_from_slice(&from[columns.clone()]);
-                }
+            let told = |error: ReadBackError| JsValue::from(Problem::other(&error));
+            let Some(mut reading) = reading else {
+                return Ok(Uint8Array::new_with_length(0).into());
+            };
+            while !reading.has_arrived(&gpu).map_err(told)? {
+                pause(5.0).await;
             }
-            Ok(Uint8Array::from(&picture[..]).into())
+            let pixels = reading.into_pixels(&gpu).map_err(told)?;
+            Ok(Uint8Array::from(&pixels[..]).into())
         })
     }
 }
 
 fn button_of(number: u8) -> Option<Button> {
     [Button::Left, Button::Middle, Button::Right].get(usize::from(number)).copied()
-}
-
-fn key_of(code: &str) -> Option<Key> {
-    Some(match code {
-        "ArrowLeft" => Key::Left,
-        "ArrowRight" => Key::Right,
-        "ArrowUp" => Key::Up,
-        "ArrowDown" => Key::Down,
-        "Equal" | "NumpadAdd" => Key::ZoomIn,
-        "Minus" | "NumpadSubtract" => Key::ZoomOut,
-        "KeyW" => Key::Ahead,
-        "KeyS" => Key::Back,
-        "KeyA" => Key::StrafeLeft,
-        "KeyD" => Key::StrafeRight,
-        "KeyE" => Key::Rise,
-        "KeyQ" => Key::Sink,
-        _ => return None,
-    })
 }

@@ -3,12 +3,13 @@
 use std::cell::RefCell;
 
 use corniche_geom::TileId;
+use corniche_live::formatting::with_causes;
 use corniche_tileset::Manifest;
 use corniche_viewer::tiles::TileDecoder;
 use js_sys::{Reflect, Uint8Array};
 use wasm_bindgen::{JsCast as _, JsValue, prelude::wasm_bindgen};
 
-use crate::{decoders::object, problem::with_causes};
+use crate::problem::object;
 
 thread_local! {
     /// The manifest of the package whose tiles this worker decodes.

@@ -8,7 +8,8 @@ use std::{
 
 use corniche_geom::TileId;
 use corniche_live::{
-    LoaderThreads,
+    LoaderThreads, NamedStyle, Redraw, Visibility,
+    controls::Inertia,
     polled_loader::{PolledLoader, late_package, polled},
 };
 use corniche_styles::Style;
@@ -20,7 +21,7 @@ use corniche_viewer::{
 };
 
 use super::*;
-use crate::{Inertia, NamedStyle, canvas::tests::canvas, save_files::tests::NoFiles};
+use crate::canvas::tests::canvas;
 
 const SIZE_PX: [u32; 2] = [640, 480];
 
@@ -36,8 +37,8 @@ fn request() -> WindowRequest {
         styles: vec![NamedStyle { name: "atlas".to_owned(), style: Style::road_atlas() }],
         reload: None,
         photo: None,
-        areas: crate::Visibility::Shown,
-        boundaries: crate::Visibility::Shown,
+        areas: Visibility::Shown,
+        boundaries: Visibility::Shown,
         overlays: Vec::new(),
         drawn_lines: Vec::new(),
         save_drawing: Box::new(|_| Ok(PathBuf::new())),
@@ -65,12 +66,15 @@ fn drawn_at_rest(
     loader: Box<dyn TileLoader>,
 ) -> Vec<Drawn> {
     let request = request();
-    check(&request, package.as_ref()).unwrap();
-    let data = package.manifest().data_bounds;
-    let extent = MapExtent::of_data(data, root.summary.unwrap().height_range_m);
-    let shown = ShownPackage::of(&request, package, root, extent).unwrap();
-    let platform = AppPlatform { loader, files: Box::new(NoFiles), clock_s: Box::new(|| 0.0) };
-    let mut app = App::new(request, shown, None, canvas, platform, SIZE_PX, 1.0).unwrap();
+    request.check().unwrap();
+    let heights_m = root.summary.unwrap().height_range_m;
+    let extent = MapExtent::of_data(package.manifest().data_bounds, heights_m);
+    let ground = SightedGround { extent, heights_m, at_place_m: None };
+    // Nothing is saved.
+    let files = FileWriter::new(PathBuf::from("no folder"), Arc::new(|| ()));
+    let platform = AppPlatform { loader, files, clock_s: Box::new(|| 0.0) };
+    let app = App::new(request, package, ground, canvas.gpu(), platform, (SIZE_PX, 1.0));
+    let mut app = app.unwrap();
     let ui = egui::Context::default();
     crate::panel::set_up(&ui);
     let size = SIZE_PX.map(|side| side as f32);
@@ -87,9 +91,12 @@ fn drawn_at_rest(
         };
         let frame = app.frame(canvas, &ui, input).unwrap();
         canvas.free_textures(&frame.unused_textures);
-        let (missing, loading) = (app.tiles.missing(), app.tiles.loading());
+        let tiles = &app.desk.session.tiles;
+        let (missing, loading) = (tiles.missing(), tiles.loading());
         if frame.redraw != Redraw::Now && missing == 0 && loading == 0 {
-            return app.tiles.drawn().to_vec();
+            let drawn = tiles.drawn().to_vec();
+            assert!(app.captures.files.finish().is_empty());
+            return drawn;
         }
         assert!(begun.elapsed() < Duration::from_mins(1), "{missing} missing");
     }

@@ -2,11 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use corniche_live::MapScene;
+use corniche_live::{Compare, PixelReading};
 use corniche_styles::Style;
 use corniche_viewer::{
-    Wireframe,
+    RoadMethod, RoadOptions, Wireframe,
     camera::{Camera, Orientation},
+    gpu::Picture,
 };
 use egui::{Color32, Rect, pos2};
 use glam::DVec3;
@@ -29,22 +30,22 @@ pub(crate) fn canvas() -> Option<Canvas> {
 }
 
 /// Nothing but sky and void, so that no tile is needed.
-fn scene(compare: Compare) -> Scene {
+fn scene(compare: Compare) -> MapScene {
     scene_of_size(compare, SIZE_PX)
 }
 
 /// The same with heights doubled.
-fn raised() -> Scene {
-    let mut raised = scene(Compare::Off);
-    raised.map.exaggeration = 2.0;
-    raised
+fn raised() -> MapScene {
+    MapScene { exaggeration: 2.0, ..scene(Compare::Off) }
 }
 
-pub(crate) fn scene_of_size(compare: Compare, size_px: [u32; 2]) -> Scene {
+pub(crate) fn scene_of_size(compare: Compare, size_px: [u32; 2]) -> MapScene {
     let level = Orientation { heading_deg: 0.0, pitch_deg: 80.0 };
-    let map = MapScene {
+    MapScene {
         camera: Camera::look_at(DVec3::ZERO, 1000.0, level, size_px),
+        shown_px: size_px,
         style: Style::road_atlas(),
+        compare,
         roads: compare.pictures(RoadOptions::of(RoadMethod::Geometry)),
         exaggeration: 1.0,
         point_scale: 1.0,
@@ -54,8 +55,8 @@ pub(crate) fn scene_of_size(compare: Compare, size_px: [u32; 2]) -> Scene {
         wireframe: Wireframe::Hidden,
         drawn: Vec::new(),
         samples_per_side: 1,
-    };
-    Scene { map, window_px: size_px, compare, lines_revision: 0 }
+        revision: 0,
+    }
 }
 
 fn red_beside_map(ui: &mut egui::Ui, texture: TextureId) {
@@ -126,8 +127,7 @@ fn a_picture_shows_what_was_shown_when_it_was_asked_for() {
     let before = map(&canvas);
     let mut snapshot = canvas.snap_map(0.5).unwrap();
     let night = Style { sky: [0.0; 3], ..Style::road_atlas() };
-    let mut other = scene(Compare::Off);
-    other.map.style = night;
+    let other = MapScene { style: night, ..scene(Compare::Off) };
     canvas.draw(&other).unwrap();
     assert_ne!(map(&canvas), before, "something else is shown by now");
     let begun = Instant::now();
@@ -161,7 +161,9 @@ fn a_split_picture_has_both_sides() {
     let Some(canvas) = canvas() else { return };
     let gpu = canvas.gpu();
     let [red, blue] = [wgpu::Color::RED, wgpu::Color::BLUE].map(|color| plain(gpu, color));
-    let both = Snapshot::of_map(gpu, &red, Some(&blue), 16).into_image(gpu).unwrap();
+    let [red, blue] = [red, blue].map(|picture| picture.begin_read(gpu));
+    let both = PixelReading::new(vec![(red, 0..16), (blue, 16..SIZE_PX[0])], SIZE_PX);
+    let both = Snapshot::of_map(both).into_image(gpu).unwrap();
     for (x, y, pixel) in both.enumerate_pixels() {
         let expected = if x < 16 { [255, 0, 0, 255] } else { [0, 0, 255, 255] };
         assert_eq!(pixel.0, expected, "{x}, {y}");
@@ -176,8 +178,7 @@ fn in_a_hurry_fewer_pixels_are_drawn() {
     assert!(canvas.is_full());
     let level = Orientation { heading_deg: 0.0, pitch_deg: 80.0 };
     let camera = Camera::look_at(DVec3::ZERO, 1000.0, level, [32, 24]);
-    let mut coarse = full.clone();
-    coarse.map.camera = camera;
+    let coarse = MapScene { camera, ..full.clone() };
     canvas.draw(&coarse).unwrap();
     assert!(!canvas.is_full());
     assert_eq!(map(&canvas).dimensions(), (32, 24));
@@ -192,7 +193,7 @@ fn what_was_lost_is_drawn_again_by_another_canvas() {
     first.gpu().device().destroy();
     // Whether or not drawing on tells of it, it must not end the program.
     let _ = first.draw(&raised());
-    let _ = first.times();
+    let _ = first.map.times();
     assert!(first.gpu().is_lost());
     let Some(mut second) = canvas() else { return };
     assert!(!second.gpu().is_lost());

@@ -1,13 +1,32 @@
-//! Errors of windows and of saving their pictures and flights.
+//! How a window ends, and why there is none.
 
 use std::{io, path::PathBuf};
 
 use corniche_viewer::{
     OffGround, OutOfRange,
-    flight::FlightError,
     gpu::{GpuError, ReadBackError},
     tiles::LoadTileError,
 };
+
+use crate::NotSaved;
+
+/// What came of a window.
+#[derive(Debug)]
+pub struct Closed {
+    /// Why it is closed.
+    pub end: Result<End, WindowError>,
+    /// What became of the files that were saved after the last frame, for which the window could show no message any more.
+    pub last_files: Vec<Result<PathBuf, NotSaved>>,
+}
+
+/// How a window ends when nothing fails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// The person closed it.
+    Closed,
+    /// [`WindowRequest::is_stopped`](crate::WindowRequest::is_stopped) said so.
+    Stopped,
+}
 
 /// Why there is no window, or none any more.
 #[derive(Debug, thiserror::Error)]
@@ -50,22 +69,5 @@ pub enum WindowError {
     #[error(
         "the graphics device was lost twice within a minute; the driver may be at fault, or WGPU_BACKEND may choose another one"
     )]
-    DeviceLost,
-}
-
-/// Why a picture or a flight was not saved.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
-#[non_exhaustive]
-pub enum NotSaved {
-    #[error("nothing could be saved in {}", folder.display())]
-    File { folder: PathBuf, source: io::Error },
-    #[error("nothing was recorded")]
-    Recording(#[from] FlightError),
-    #[error("no picture was taken")]
-    Picture(#[from] ReadBackError),
-    #[error("no picture was taken: it was not yet drawn")]
-    Untaken,
-    #[error("no picture was taken: the graphics device was lost")]
     DeviceLost,
 }

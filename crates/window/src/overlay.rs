@@ -4,39 +4,26 @@
 //! Everything is painted at a fixed place in the part of the map that the panel leaves free. It does not use windows of the
 //! toolkit, so that nothing moves, fades or covers anything else.
 
-mod answer;
 mod compass;
-mod credits;
 mod divider;
-mod handles;
 mod help;
-mod legend;
-mod no_data;
 mod notice_list;
 mod palette;
-mod panel_button;
 mod scale_bar;
 
+use corniche_live::{Compare, MapSettings};
 use egui::{Rect, Ui};
 
-pub(crate) use self::answer::OverlayAnswer;
+pub(crate) use self::palette::OverlayAnswer;
 use self::{
-    compass::{compass, compass_place},
-    credits::{credits, credits_place},
-    divider::divider,
-    handles::handles,
+    compass::{compass, compass_place, panel_button},
+    divider::{divider, handles},
     help::help,
-    legend::legend,
-    no_data::no_data,
-    notice_list::notices,
+    notice_list::{legend, no_data, notices},
     palette::LABEL_HEIGHT,
-    panel_button::panel_button,
-    scale_bar::scale_bar,
+    scale_bar::{credits, credits_place, scale_bar},
 };
-use crate::{
-    settings::{Compare, Settings},
-    window_content::WindowContent,
-};
+use crate::window_content::WindowContent;
 
 /// A map with a side of less than this shows only credits and scale bar, points.
 const SMALL: f32 = 110.0;
@@ -45,7 +32,7 @@ const SMALL: f32 = 110.0;
 pub(crate) fn overlay(
     ui: &mut Ui,
     rect: Rect,
-    settings: &mut Settings,
+    settings: &mut MapSettings,
     content: &WindowContent<'_>,
 ) -> OverlayAnswer {
     let mut answer = OverlayAnswer::default();

@@ -1,22 +1,15 @@
 //! The panel at the window's right side, and how it shares the window with the map.
 
-mod advanced;
-mod camera;
-mod lines;
-mod map;
+mod actions;
+mod look;
 mod performance;
-mod record;
-mod roads;
-mod slide;
 mod status_line;
 
+use corniche_live::{Command, MapSettings};
 use egui::{Color32, Rect, Ui, pos2};
 
 use self::status_line::{PanelRoom, status_line};
-use crate::{
-    command::Command, map_pictures::Pictures, overlay, settings::Settings,
-    window_content::WindowContent,
-};
+use crate::{canvas::Pictures, overlay, window_content::WindowContent};
 
 /// Width of the panel, points.
 const WIDTH: f32 = 300.0;
@@ -61,7 +54,7 @@ pub(crate) fn first_width(window_width: f32) -> f32 {
 /// Lays out the whole window: the map, the panel, the status line and the overlay.
 pub(crate) fn show(
     ui: &mut Ui,
-    settings: &mut Settings,
+    settings: &mut MapSettings,
     content: &WindowContent<'_>,
     pictures: Pictures,
 ) -> Answer {
@@ -101,7 +94,7 @@ fn frame(ui: &Ui) -> egui::Frame {
 
 fn sections(
     ui: &mut Ui,
-    settings: &mut Settings,
+    settings: &mut MapSettings,
     content: &WindowContent<'_>,
     commands: &mut Vec<Command>,
 ) {
@@ -118,13 +111,13 @@ fn sections(
         });
     });
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-        section(ui, "Roads", |ui| roads::show(ui, settings));
-        section(ui, "Classes", |ui| roads::classes(ui, settings, content));
-        section(ui, "Map", |ui| map::show(ui, settings, content));
-        section(ui, "Camera", |ui| camera::show(ui, settings, content, commands));
-        section(ui, "Lines", |ui| lines::show(ui, content, commands));
-        section(ui, "Record", |ui| record::show(ui, content, commands));
-        section(ui, "Advanced", |ui| advanced::show(ui, settings, content));
+        section(ui, "Roads", |ui| look::roads(ui, settings));
+        section(ui, "Classes", |ui| look::classes(ui, settings, content));
+        section(ui, "Map", |ui| look::map(ui, settings, content));
+        section(ui, "Camera", |ui| actions::camera(ui, settings, content, commands));
+        section(ui, "Lines", |ui| actions::lines(ui, content, commands));
+        section(ui, "Record", |ui| actions::record(ui, content, commands));
+        section(ui, "Advanced", |ui| look::advanced(ui, settings, content));
         section(ui, "Performance", |ui| performance::show(ui, content));
     });
 }

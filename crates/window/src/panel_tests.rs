@@ -1,9 +1,11 @@
 //! No text of the window is cut off or hidden, however small the window is.
 
-use corniche_live::{GroundPoint, controls::Mode};
+use corniche_live::{
+    Compare, DrawingContent, FrameTimes, GroundPoint, Notice, Shot, Visibility, controls::Mode,
+};
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{
-    BoundaryLines, RoadMethod,
+    BoundaryLines, RoadMethod, RoadOptions,
     camera::Orientation,
     flight::{Pose, WorkingCrs},
     gpu::PassTimes,
@@ -11,14 +13,12 @@ use corniche_viewer::{
 use egui::{Event, PointerButton, RawInput, Shape, TextureId, vec2};
 
 use super::*;
-use crate::{
-    frame_times::FrameTimes,
-    notices::Notice,
-    settings::{Compare, usual},
-};
-
 #[path = "panel/golden_tests.rs"]
 mod golden;
+
+fn usual() -> MapSettings {
+    MapSettings::usual(RoadOptions::of(RoadMethod::ShadowVolumes))
+}
 
 /// Everything there is to tell, and all of it long.
 struct Told {
@@ -83,7 +83,7 @@ impl Told {
                 boundaries: !self.boundary_lines.is_empty(),
             },
             overlays: &[],
-            drawing: crate::window_content::DrawingContent::default(),
+            drawing: DrawingContent::default(),
             overlay_colors: Vec::new(),
             boundary_lines: self.boundary_lines.clone(),
             road_colors: &[[0.8, 0.2, 0.1]; 9],
@@ -106,7 +106,7 @@ impl Told {
 /// Lays out a window of a size in points, with the events of each pass; the last one counts.
 fn lay_out(
     size: [f32; 2],
-    settings: &mut Settings,
+    settings: &mut MapSettings,
     content: &WindowContent<'_>,
     passes: &[&[Event]],
 ) -> (Vec<(String, Rect, Rect)>, Answer) {
@@ -148,17 +148,17 @@ fn gather(shape: &Shape, clip: Rect, texts: &mut Vec<(String, Rect, Rect)>) {
 }
 
 /// All states of the panel that look different.
-fn states() -> Vec<(&'static str, Settings)> {
+fn states() -> Vec<(&'static str, MapSettings)> {
     let usual = usual();
     let mut none = usual.clone();
     none.roads.method = RoadMethod::None;
     vec![
         ("usual", usual.clone()),
         ("no roads", none),
-        ("split", Settings { compare: Compare::Split, ..usual.clone() }),
-        ("difference", Settings { compare: Compare::Difference, ..usual.clone() }),
-        ("hidden", Settings { is_panel_open: false, ..usual.clone() }),
-        ("help", Settings { is_panel_open: false, is_help_open: true, ..usual }),
+        ("split", MapSettings { compare: Compare::Split, ..usual.clone() }),
+        ("difference", MapSettings { compare: Compare::Difference, ..usual.clone() }),
+        ("hidden", MapSettings { is_panel_open: false, ..usual.clone() }),
+        ("help", MapSettings { is_panel_open: false, is_help_open: true, ..usual }),
     ]
 }
 
@@ -269,10 +269,10 @@ fn a_window_too_narrow_for_the_panel_says_so() {
 #[test]
 fn the_panel_pushes_the_divider_aside() {
     let told = Told::new();
-    let mut settings = Settings { compare: Compare::Split, divider_share: 0.9, ..usual() };
+    let mut settings = MapSettings { compare: Compare::Split, divider_share: 0.9, ..usual() };
     lay_out([1000.0, 700.0], &mut settings, &told.content(), &[&[]]);
     assert!((settings.divider_share - (700.0 - 24.0) / 1000.0).abs() < 1e-3);
-    settings = Settings { divider_share: 0.9, is_panel_open: false, ..settings };
+    settings = MapSettings { divider_share: 0.9, is_panel_open: false, ..settings };
     lay_out([1000.0, 700.0], &mut settings, &told.content(), &[&[]]);
     assert!((settings.divider_share - 0.9).abs() < 1e-3);
 }
@@ -313,7 +313,7 @@ fn click(at: egui::Pos2) -> [Vec<Event>; 3] {
 #[test]
 fn a_click_on_the_compass_turns_north_up() {
     let told = Told::new();
-    let mut settings = Settings { is_panel_open: false, ..usual() };
+    let mut settings = MapSettings { is_panel_open: false, ..usual() };
     let [over, press, release] = click(pos2(1000.0 - 34.0, 34.0));
     let (_, answer) =
         lay_out([1000.0, 700.0], &mut settings, &told.content(), &[&over, &press, &release]);
@@ -325,7 +325,7 @@ fn buttons_ask_for_what_they_say() {
     let told = Told::new();
     let size = [1280.0, 1000.0];
     for (words, command) in [
-        ("Map (P)", Command::Take(crate::command::Shot::Map)),
+        ("Map (P)", Command::Take(Shot::Map)),
         ("Stop and save", Command::StopRecording),
         ("Fly (F)", Command::ToggleFly),
         ("Go to", Command::GoTo),
@@ -356,7 +356,7 @@ fn the_mouse_is_the_maps_beside_the_panel_and_only_there() {
 #[test]
 fn the_divider_follows_the_mouse_and_stays_in_the_window() {
     let told = Told::new();
-    let mut settings = Settings { compare: Compare::Split, is_panel_open: false, ..usual() };
+    let mut settings = MapSettings { compare: Compare::Split, is_panel_open: false, ..usual() };
     let at = pos2(500.0, 400.0);
     let [over, press, _] = click(at);
     let moved = [Event::PointerMoved(at + vec2(-250.0, 0.0))];
@@ -372,7 +372,7 @@ fn the_divider_follows_the_mouse_and_stays_in_the_window() {
 fn what_nobody_moves_stays_as_it_was_given() {
     let told = Told::new();
     for (exaggeration, screen_space_error_px) in [(0.01, 0.1), (100.0, 20.0), (1.234_5, 0.75)] {
-        let given = Settings {
+        let given = MapSettings {
             exaggeration,
             screen_space_error_px,
             width_factors: [0.123_4; FunctionalRoadClass::COUNT],
@@ -418,12 +418,12 @@ fn boundaries_are_listed_while_they_are_shown() {
     let long = "boundary, level 6, boundary, level 7, boundary, level 8";
     let boundary_lines = vec![line("country border"), line(long)];
     let told = Told { boundary_lines, ..Told::new() };
-    for boundaries in [crate::Visibility::Shown, crate::Visibility::Hidden] {
-        let mut settings = Settings { boundaries, ..usual() };
+    for boundaries in [Visibility::Shown, Visibility::Hidden] {
+        let mut settings = MapSettings { boundaries, ..usual() };
         let (texts, _) = lay_out([1280.0, 1200.0], &mut settings, &told.content(), &[&[], &[]]);
         for label in ["country border", long] {
             let found = texts.iter().find(|(words, ..)| words == label);
-            assert_eq!(found.is_some(), boundaries == crate::Visibility::Shown, "{label}");
+            assert_eq!(found.is_some(), boundaries == Visibility::Shown, "{label}");
             let fits = found.is_none_or(|(_, place, clip)| clip.contains_rect(*place));
             assert!(fits, "{found:?}");
         }
@@ -486,7 +486,7 @@ fn where_the_middle_has_no_ground_the_map_says_how_to_come_back() {
 fn a_closed_panel_leaves_a_button_that_opens_it() {
     let told = Told::new();
     let size = [480.0, 640.0];
-    let mut settings = Settings { is_panel_open: false, ..usual() };
+    let mut settings = MapSettings { is_panel_open: false, ..usual() };
     let (_, answer) = lay_out(size, &mut settings, &told.content(), &[&[], &[]]);
     let button = answer.occupied.iter().find(|rect| (rect.width() - 28.0).abs() < 0.1).unwrap();
     let [over, press, release] = click(button.center());

@@ -1,16 +1,13 @@
 //! What a frame shows beside the map: values that go from the app to the panel and the overlay.
 
-use corniche_live::{GroundPoint, controls::Mode};
+use corniche_live::{DrawingContent, FrameTimes, GroundPoint, Notice, controls::Mode};
 use corniche_roads::FunctionalRoadClass;
+use corniche_styles::Rgb;
 use corniche_viewer::{
     BoundaryLines, RoadMethod,
     flight::{Pose, WorkingCrs},
     gpu::PassTimes,
 };
-
-use corniche_styles::Rgb;
-
-use crate::{frame_times::FrameTimes, notices::Notice};
 
 /// What a package may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,34 +16,6 @@ pub(crate) struct Has {
     pub(crate) areas: bool,
     /// Whether the package has boundaries.
     pub(crate) boundaries: bool,
-}
-
-/// A point of a drawn line.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Handle {
-    /// The place on the screen, points.
-    pub(crate) at: [f32; 2],
-    /// Whether keys act on it.
-    pub(crate) is_picked: bool,
-}
-
-/// What is told of the lines that a person draws.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct DrawingContent {
-    /// Whether the mouse draws.
-    pub(crate) is_on: bool,
-    /// The points of all lines, while it does.
-    pub(crate) handles: Vec<Handle>,
-    /// How many lines there are.
-    pub(crate) lines: usize,
-    /// Whether a point is picked.
-    pub(crate) is_picked: bool,
-    /// Whether a change can be taken back, and whether one can be made again.
-    pub(crate) can_step: [bool; 2],
-    /// Whether something is not saved.
-    pub(crate) is_changed: bool,
-    /// How often a line was laid on a tile for the last change, and how many milliseconds that took.
-    pub(crate) last: Option<(usize, f64)>,
 }
 
 /// Everything that the panel and the overlay show, apart from the settings.

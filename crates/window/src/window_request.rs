@@ -1,91 +1,18 @@
 //! What a caller asks of a window: package, styles, layers, and how files are written.
 
-use std::{collections::BTreeSet, io, path::PathBuf};
+use std::{io, path::PathBuf};
 
+use corniche_live::{
+    CommandOf, DrawnLine, MAX_PITCH_DEG, NamedStyle, Reload, SaveDrawing, Visibility,
+};
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::{Rgb, Style};
-use corniche_viewer::{CameraRequest, RoadMethod, RoadOptions, Wireframe, stream::StreamBudget};
+use corniche_viewer::{CameraRequest, RoadMethod, RoadOptions, range, stream::StreamBudget};
 
-use crate::{Inertia, NotSaved};
-
-/// A style and what it is called.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NamedStyle {
-    /// The name that the panel lists.
-    pub name: String,
-    /// How the map looks.
-    pub style: Style,
-}
-
-/// Whether a layer is drawn, where the package has it: areas, or boundaries.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Visibility {
-    /// The classes that the style draws are shown.
-    Shown,
-    /// No class is shown.
-    Hidden,
-}
-
-/// What a window shows, as far as a picture of the same view needs it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ShownView {
-    /// Where it looks from; never the overview.
-    pub camera: CameraRequest,
-    /// Width and height of the map, pixels.
-    pub size_px: [u32; 2],
-    /// How roads are drawn.
-    pub roads: RoadOptions,
-    /// The name of the style.
-    pub style: String,
-    /// How strongly photos are seen, 0 to 1; `None`: as the style says.
-    pub photo: Option<f32>,
-    /// Whether areas are drawn as the style says, or not at all.
-    pub areas: Visibility,
-    /// Whether boundaries are drawn as the style says, or not at all.
-    pub boundaries: Visibility,
-    /// Files of lines that are hidden, by their numbers in [`WindowRequest::overlays`].
-    pub hidden_overlays: BTreeSet<usize>,
-    /// Colours of the lines of all files, in the style that is shown.
-    pub overlay_colors: Vec<Rgb>,
-    /// Factor on heights.
-    pub exaggeration: f64,
-    /// A tile is refined while its error looks larger than this, pixels.
-    pub screen_space_error_px: f64,
-    /// A tile is refined while one of its cells looks larger than this, pixels.
-    pub cell_px: f64,
-    /// Samples per pixel along each side.
-    pub samples_per_side: u32,
-    /// Whether edges of triangles are drawn.
-    pub wireframe: Wireframe,
-}
-
-/// The command line that draws a view as a picture.
-pub type CommandOf = Box<dyn Fn(&ShownView) -> String>;
-
-/// Called about once a second: has the first style changed? `None` if not; else the new style, which is shown from then on,
-/// or in words why it cannot be used: these words are shown, and the old style stays.
-pub type Reload = Box<dyn FnMut() -> Option<Result<Style, String>>>;
+use crate::{Inertia, WindowError};
 
 /// Opens the trace; called once, when the window is open. Each write must reach the file at once, for a script may read it
 /// meanwhile.
 pub type BeginTrace = Box<dyn FnOnce() -> io::Result<Box<dyn io::Write>>>;
-
-/// A line that a person draws or has drawn.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DrawnLine {
-    /// Which feature of the file it comes from; `None` for one that was drawn here.
-    pub feature: Option<usize>,
-    /// Whether it is the outline of an area: its first point comes after the last one.
-    pub is_area: bool,
-    /// Longitude and latitude of each point, WGS84.
-    pub points_deg: Vec<[f64; 2]>,
-}
-
-/// Saves all lines, and tells where.
-pub type SaveDrawing = Box<dyn FnMut(&[DrawnLine]) -> Result<PathBuf, NotSaved>>;
-
-/// Tells the time, seconds since any moment.
-pub type ClockS = Box<dyn Fn() -> f64>;
 
 /// How to open a window, and what it shows at first.
 pub struct WindowRequest {
@@ -138,4 +65,27 @@ pub struct WindowRequest {
     pub trace: Option<BeginTrace>,
     /// Called several times a second: must the program end, for instance because of a signal?
     pub is_stopped: Box<dyn Fn() -> bool>,
+}
+
+impl WindowRequest {
+    /// Refuses what makes no sense, whatever the package.
+    ///
+    /// # Errors
+    /// When a number is out of its range, or there is no style.
+    pub(crate) fn check(&self) -> Result<(), WindowError> {
+        if self.styles.is_empty() {
+            return Err(WindowError::NoStyle);
+        }
+        range::check_ground(self.screen_space_error_px, self.cell_px, self.exaggeration)?;
+        if let Some(samples) = self.samples_per_side {
+            range::check_supersampling(samples)?;
+        }
+        let [width, height] = self.size_px;
+        let least = f64::from(width.min(height));
+        range::within("a window's side", least, 1.0..=f64::MAX, "at least 1 pixel")?;
+        range::check_camera(self.camera)?;
+        let pitch_deg = self.camera.orientation().pitch_deg;
+        range::within("a pitch", pitch_deg, 0.0..=MAX_PITCH_DEG, "0 (straight down) to 85")?;
+        Ok(())
+    }
 }

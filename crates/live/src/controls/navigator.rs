@@ -7,11 +7,9 @@ use super::{
     bounded_view::{BoundedView, Moved},
     fingers::{Fingers, Step},
     flying::Flying,
-    gesture::{Gesture, Trail},
     input::{Button, Input, Key, KeyState, Modifiers},
+    movement::{Gesture, Pending, Trail, Travel},
     options::{Inertia, Limits, Mode},
-    pending::Pending,
-    travel::Travel,
     view::{KnownGround, View, half_turn},
 };
 

@@ -1,35 +1,29 @@
-//! Pictures and flights that a person saves.
+//! Pictures that a person saves, from being asked for to being written.
 
 use std::{collections::VecDeque, path::PathBuf};
 
-use corniche_live::Recorder;
-use corniche_tileset::Manifest;
-use corniche_viewer::{
-    draw_attribution,
-    flight::{Pose, WorkingCrs},
-};
+use corniche_live::Shot;
+use corniche_viewer::draw_attribution;
 use egui_wgpu::ScreenDescriptor;
 use image::RgbaImage;
 
 use crate::{
     NotSaved, WindowError,
     canvas::{Canvas, Snapshot},
-    command::Shot,
-    shots::Shots,
+    files::FileWriter,
 };
 
-/// Pictures from being asked for to being saved, and the flight that is being recorded.
+/// Pictures from being asked for to being saved.
 pub(crate) struct Captures {
-    recorder: Option<Recorder>,
-    shots: Shots,
+    pub(crate) files: FileWriter,
     wanted: Vec<Shot>,
     /// Pictures whose pixels are on their way back from the graphics card.
     developing: VecDeque<(Shot, Snapshot)>,
 }
 
 impl Captures {
-    pub(crate) fn new(shots: Shots) -> Self {
-        Self { recorder: None, shots, wanted: Vec::new(), developing: VecDeque::new() }
+    pub(crate) fn new(files: FileWriter) -> Self {
+        Self { files, wanted: Vec::new(), developing: VecDeque::new() }
     }
 
     /// A picture is to be saved.
@@ -47,43 +41,6 @@ impl Captures {
         !self.developing.is_empty()
     }
 
-    /// Begins to record a flight; one that is being recorded already is dropped.
-    pub(crate) fn start_recording(&mut self, now_s: f64, pose: Pose) {
-        self.recorder = Some(Recorder::new(now_s, pose));
-    }
-
-    /// Whether a flight is being recorded.
-    pub(crate) fn is_recording(&self) -> bool {
-        self.recorder.is_some()
-    }
-
-    /// How long a flight has been recorded.
-    pub(crate) fn recording_s(&self, now_s: f64) -> Option<f64> {
-        self.recorder.as_ref().map(|recorder| recorder.duration_s(now_s))
-    }
-
-    /// The camera is here now.
-    pub(crate) fn note(&mut self, now_s: f64, pose: Pose) {
-        if let Some(recorder) = &mut self.recorder {
-            recorder.note(now_s, pose);
-        }
-    }
-
-    /// Ends the recording, if there is one, and saves it.
-    ///
-    /// # Errors
-    /// When nothing of it can be saved.
-    pub(crate) fn stop_recording(
-        &mut self,
-        now_s: f64,
-        crs: WorkingCrs<'_>,
-    ) -> Result<(), NotSaved> {
-        let Some(recorder) = self.recorder.take() else { return Ok(()) };
-        let text = recorder.finish(now_s)?.to_text(crs)?;
-        self.shots.save_flight(text);
-        Ok(())
-    }
-
     /// Begins the pictures that are asked for, and saves those whose pixels have come back, in the order in which they
     /// were asked for. Adds to `lost` why pictures were not taken, also when it fails.
     ///
@@ -92,10 +49,9 @@ impl Captures {
     pub(crate) fn take(
         &mut self,
         canvas: &mut Canvas,
-        primitives: &[egui::ClippedPrimitive],
-        screen: &ScreenDescriptor,
+        (primitives, screen): (&[egui::ClippedPrimitive], &ScreenDescriptor),
         divider_share: f32,
-        manifest: &Manifest,
+        credits: &[String],
         lost: &mut Vec<NotSaved>,
     ) -> Result<(), WindowError> {
         // What is asked for in this frame is drawn in full in the next one.
@@ -126,44 +82,37 @@ impl Captures {
             }
             let Some((shot, snapshot)) = self.developing.pop_front() else { break };
             match snapshot.into_image(canvas.gpu()) {
-                Ok(picture) => self.save(shot, picture, manifest),
+                Ok(picture) => self.save(shot, picture, credits),
                 Err(error) => lost.push(error.into()),
             }
         }
         Ok(())
     }
 
-    fn save(&mut self, shot: Shot, mut picture: RgbaImage, manifest: &Manifest) {
+    fn save(&mut self, shot: Shot, mut picture: RgbaImage, credits: &[String]) {
         // A picture of the window shows the credits already.
         if shot == Shot::Map {
-            draw_attribution(&mut picture, &manifest.attribution);
+            draw_attribution(&mut picture, credits);
         }
-        self.shots.save_picture(picture);
+        self.files.save_picture(picture);
     }
 
     /// The graphics device is lost, and with it the pictures that were being taken: `Some` if there were any.
     pub(crate) fn lose_device(&mut self) -> Option<NotSaved> {
-        let had_some = !self.developing.is_empty();
+        let had_some = self.is_developing();
         self.developing.clear();
         had_some.then_some(NotSaved::DeviceLost)
     }
 
-    /// The files that were saved, or not, since this was called last; never waits.
-    pub(crate) fn news(&mut self) -> Vec<Result<PathBuf, NotSaved>> {
-        self.shots.news()
-    }
-
-    /// The window closes: saves the recording and waits for the pictures that are being taken and written. Returns what
+    /// The window closes: waits for the pictures that are being taken and written. Returns what
     /// became of them, for there is no panel any more to show it.
     pub(crate) fn end(
         &mut self,
         canvas: &Canvas,
-        now_s: f64,
         divider_share: f32,
-        manifest: &Manifest,
+        credits: &[String],
     ) -> Vec<Result<PathBuf, NotSaved>> {
-        let recorded = self.stop_recording(now_s, WorkingCrs::of(manifest));
-        let mut saved: Vec<_> = recorded.err().into_iter().map(Err).collect();
+        let mut saved = Vec::new();
         for shot in std::mem::take(&mut self.wanted) {
             // The map is there. The panel is not: it is laid out in frames only, and there will be none.
             match canvas.snap_map(divider_share) {
@@ -175,11 +124,11 @@ impl Captures {
         }
         for (shot, snapshot) in std::mem::take(&mut self.developing) {
             match snapshot.into_image(canvas.gpu()) {
-                Ok(picture) => self.save(shot, picture, manifest),
+                Ok(picture) => self.save(shot, picture, credits),
                 Err(error) => saved.push(Err(error.into())),
             }
         }
-        saved.extend(self.shots.finish());
+        saved.extend(self.files.finish());
         saved
     }
 }

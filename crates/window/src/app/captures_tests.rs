@@ -1,23 +1,25 @@
 //! A lost device does not hide why other pictures were not taken.
 
+use std::{path::Path, sync::Arc};
+
+use corniche_live::Compare;
+
 use super::*;
-use crate::{
-    canvas::tests::{canvas, scene_of_size},
-    save_files::tests::NoFiles,
-    settings::Compare,
-};
+use crate::canvas::tests::{canvas, scene_of_size};
 
 #[test]
 fn a_lost_device_does_not_hide_why_other_pictures_were_not_taken() {
     let Some(mut canvas) = canvas() else { return };
     let mut scene = scene_of_size(Compare::Off, [64, 48]);
     canvas.draw(&scene).unwrap();
-    let mut captures = Captures::new(Shots::new(Box::new(NoFiles)));
+    // Nothing is saved.
+    let folder = Path::new("no folder").to_path_buf();
+    let mut captures = Captures::new(FileWriter::new(folder, Arc::new(|| ())));
     canvas.gpu().device().destroy();
     // Its pixels cannot come.
     let snapshot = canvas.snap_map(0.5).unwrap();
     // Without a picture of the map there is nothing to take.
-    scene.map.roads.clear();
+    scene.roads.clear();
     canvas.draw(&scene).unwrap();
     captures.want(Shot::Map);
     captures.developing.push_back((Shot::Map, snapshot));
@@ -26,10 +28,10 @@ fn a_lost_device_does_not_hide_why_other_pictures_were_not_taken() {
     assert!(canvas.gpu().is_lost());
 
     let screen = ScreenDescriptor { size_in_pixels: [64, 48], pixels_per_point: 1.0 };
-    let manifest = corniche_testing::package::manifest();
     let mut lost = Vec::new();
-    let taken = captures.take(&mut canvas, &[], &screen, 0.5, &manifest, &mut lost);
+    let taken = captures.take(&mut canvas, (&[], &screen), 0.5, &[], &mut lost);
     assert!(taken.is_err());
     assert!(matches!(lost[..], [NotSaved::Untaken]), "{lost:?}");
+    assert!(captures.files.finish().is_empty());
     assert!(matches!(captures.lose_device(), Some(NotSaved::DeviceLost)));
 }

@@ -1,14 +1,14 @@
-//! The compass in a corner of the map.
+//! The compass in a corner of the map, and the button below it that opens the panel.
 
-use egui::{Align2, Color32, CornerRadius, FontId, Pos2, Rect, Sense, Stroke, Ui, Vec2, vec2};
+use corniche_live::{Command, formatting};
+use egui::{Align2, Color32, CornerRadius, FontId, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
-use super::{
-    answer::OverlayAnswer,
-    palette::{CHALK, MARGIN, SLATE},
-};
-use crate::{command::Command, formatting, window_content::WindowContent};
+use super::palette::{CHALK, MARGIN, OverlayAnswer, SLATE, framed};
+use crate::window_content::WindowContent;
 
 const RADIUS: f32 = 26.0;
+/// Side of the button that opens the panel, points.
+const SIDE: f32 = 28.0;
 const RED: Color32 = Color32::from_rgb(206, 52, 44);
 
 /// The place of the compass in the free part of the map.
@@ -26,13 +26,8 @@ pub(crate) fn compass(
     answer: &mut OverlayAnswer,
 ) -> [f32; 2] {
     let (center, radius) = (area.center(), RADIUS);
-    let response = ui
-        .interact(area, ui.scope_id().with("compass"), Sense::click())
-        .on_hover_text("Heading and pitch. Click: north up (N)");
-    if response.clicked() {
-        answer.commands.push(Command::NorthUp);
-    }
-    answer.occupied.push(area);
+    let hover = "Heading and pitch. Click: north up (N)";
+    let response = answer.clickable(ui, (area, "compass"), hover, Command::NorthUp);
 
     let painter = ui.painter();
     let fill = if response.hovered() { SLATE.gamma_multiply(1.2) } else { SLATE };
@@ -70,4 +65,23 @@ pub(crate) fn compass(
     painter.rect_filled(plate, CornerRadius::same(4), SLATE);
     painter.galley(plate.min + vec2(5.0, 2.0), galley, CHALK);
     [area.left().min(plate.left()) - MARGIN, plate.bottom()]
+}
+
+/// Lays out the button that opens the panel, beneath `top` at the right edge, if there is room for it.
+pub(crate) fn panel_button(ui: &mut Ui, room: Rect, top: f32, answer: &mut OverlayAnswer) {
+    let corner = pos2(room.right() - MARGIN - SIDE, top + MARGIN);
+    let plate = Rect::from_min_size(corner, vec2(SIDE, SIDE));
+    if !room.contains_rect(plate) {
+        return;
+    }
+    let hover = "Show the panel (Tab)";
+    let response = answer.clickable(ui, (plate, "panel button"), hover, Command::TogglePanel);
+    let fill = if response.hovered() { SLATE.gamma_multiply(1.2) } else { SLATE };
+    let painter = ui.painter();
+    framed(painter, plate, fill, CHALK.gamma_multiply(0.5));
+    for k in [-1.0, 0.0, 1.0] {
+        let middle = plate.center() + vec2(0.0, 5.0 * k);
+        let ends = [middle - vec2(7.0, 0.0), middle + vec2(7.0, 0.0)];
+        painter.line_segment(ends, Stroke::new(1.5, CHALK));
+    }
 }

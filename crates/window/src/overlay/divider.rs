@@ -1,22 +1,22 @@
-//! The line between the two pictures of a split screen, and the names of the pictures.
+//! What can be dragged on the map: the line between the two pictures of a split screen, with their
+//! names, and points of drawn lines.
 
-use egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
+use corniche_live::{DrawingContent, MapSettings, range};
+use egui::{Align2, Color32, CornerRadius, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 
-use super::{
-    answer::OverlayAnswer,
-    palette::{CHALK, MARGIN, SLATE},
-};
-use crate::settings::{Settings, range};
+use super::palette::{CHALK, MARGIN, OverlayAnswer, SLATE};
 
 /// The divider of a split screen stays this far from the panel, points.
 const GRIP_ROOM: f32 = 24.0;
+/// Radius of the points of drawn lines, points of the screen.
+const RADIUS: f32 = 4.0;
 
 /// Lays out the line between two pictures, which can be dragged, and their names.
 pub(crate) fn divider(
     ui: &mut Ui,
     rect: Rect,
     compass: Rect,
-    settings: &mut Settings,
+    settings: &mut MapSettings,
     answer: &mut OverlayAnswer,
 ) {
     let whole = ui.ctx().viewport_rect();
@@ -50,5 +50,19 @@ pub(crate) fn divider(
             align.anchor_size(at, painter.layout_no_wrap(words.into(), font.clone(), CHALK).size());
         painter.rect_filled(place.expand2(vec2(5.0, 2.0)), CornerRadius::same(3), SLATE);
         painter.text(at, align, words, font, CHALK);
+    }
+}
+
+/// Paints the points of the lines that a person draws.
+pub(crate) fn handles(ui: &Ui, drawing: &DrawingContent) {
+    let painter = ui.painter();
+    for handle in &drawing.handles {
+        let [x, y] = handle.at;
+        let (fill, radius) = if handle.is_picked {
+            (Color32::from_rgb(0xFF, 0x6A, 0x00), RADIUS + 1.5)
+        } else {
+            (Color32::WHITE, RADIUS)
+        };
+        painter.circle(pos2(x, y), radius, fill, Stroke::new(1.5, Color32::from_gray(0x20)));
     }
 }

@@ -1,14 +1,59 @@
-//! The newest notices are laid out over the map.
+//! What is told in the upper left corner of the map: the legend of a difference, that there is no
+//! ground, and the newest notices.
 
 use std::sync::Arc;
 
+use corniche_live::{Command, Notice, controls::Mode};
+use corniche_viewer::gpu::{DIFFERENCE_COLORS, DifferenceColors};
 use egui::{Color32, CornerRadius, FontId, Galley, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
 
-use super::{
-    answer::OverlayAnswer,
-    palette::{AMBER, CHALK, MARGIN, SLATE},
-};
-use crate::{command::Command, notices::Notice, window_content::WindowContent};
+use super::palette::{AMBER, CHALK, LABEL_HEIGHT, MARGIN, OverlayAnswer, SLATE, framed};
+use crate::window_content::WindowContent;
+
+/// What is said where the middle of the map has no ground.
+pub(crate) const WORDS: &str = "no data here; R returns to the first view";
+
+/// Says that there is no ground in the middle of the map, and how to come back. In flight one may well look at the sky.
+/// Returns the upper edge of what is left of the room.
+pub(crate) fn no_data(ui: &Ui, room: Rect, content: &WindowContent<'_>) -> f32 {
+    let is_lost = content.metres_per_point.is_none() && content.tiles_drawn > 0;
+    if !is_lost || content.mode == Mode::Fly {
+        return room.top();
+    }
+    let painter = ui.painter();
+    let width = (room.width() - 2.0 * MARGIN - 16.0).max(0.0);
+    let galley = painter.layout(WORDS.to_owned(), FontId::proportional(13.0), CHALK, width);
+    let plate =
+        Rect::from_min_size(room.min + vec2(MARGIN, MARGIN), galley.size() + vec2(16.0, 10.0));
+    framed(painter, plate, SLATE, AMBER);
+    painter.galley(plate.min + vec2(8.0, 5.0), galley, CHALK);
+    plate.bottom()
+}
+
+/// Paints what the colours of a difference mean. Returns the lower edge of the legend.
+pub(crate) fn legend(ui: &Ui, room: Rect) -> f32 {
+    let painter = ui.painter();
+    let (mut left, mut top) = (room.left() + MARGIN, room.top() + MARGIN);
+    let DifferenceColors { first_only, second_only, other_label } = DIFFERENCE_COLORS;
+    for (words, color) in
+        [("GEO only", first_only), ("SV only", second_only), ("another class", other_label)]
+    {
+        let [red, green, blue] = color.map(|part| (part * 255.0).round() as u8);
+        let galley = painter.layout_no_wrap(words.into(), FontId::proportional(12.0), CHALK);
+        let size = galley.size() + vec2(28.0, 6.0);
+        if left + size.x > room.right() && left > room.left() + MARGIN {
+            (left, top) = (room.left() + MARGIN, top + size.y + 4.0);
+        }
+        let plate = Rect::from_min_size(pos2(left, top), size);
+        painter.rect_filled(plate, CornerRadius::same(3), SLATE);
+        let swatch =
+            Rect::from_center_size(pos2(plate.left() + 12.0, plate.center().y), Vec2::splat(10.0));
+        painter.rect_filled(swatch, CornerRadius::ZERO, Color32::from_rgb(red, green, blue));
+        painter.galley(plate.min + vec2(22.0, 3.0), galley, CHALK);
+        left = plate.right() + 4.0;
+    }
+    top + LABEL_HEIGHT - MARGIN
+}
 
 /// Lays out the notices: the newest of them, as many as there is room for.
 pub(crate) fn notices(
@@ -38,13 +83,7 @@ pub(crate) fn notices(
         let plate = Rect::from_min_size(pos2(room.left() + MARGIN, top), size);
         // A warning, which stays until it is dismissed, has a coloured edge.
         let edge = notice.until_s.map_or(AMBER, |_| CHALK.gamma_multiply(0.4));
-        painter.rect(
-            plate,
-            CornerRadius::same(4),
-            SLATE,
-            Stroke::new(1.0, edge),
-            egui::StrokeKind::Inside,
-        );
+        framed(painter, plate, SLATE, edge);
         painter.galley(plate.min + vec2(8.0, 5.0), galley, CHALK);
         let cross = Rect::from_center_size(
             pos2(plate.right() - 12.0, plate.top() + 12.0),

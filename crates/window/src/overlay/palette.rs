@@ -1,6 +1,7 @@
-//! Colours and sizes that the parts of the overlay share.
+//! What the parts of the overlay share: colours, sizes, plates, and what a person clicked on them.
 
-use egui::Color32;
+use corniche_live::Command;
+use egui::{Color32, CornerRadius, Painter, Rect, Response, Sense, Stroke, StrokeKind, Ui};
 
 /// Distance of the parts from the edges and from each other, points.
 pub(crate) const MARGIN: f32 = 8.0;
@@ -18,3 +19,35 @@ pub(crate) const AMBER: Color32 = Color32::from_rgb(214, 160, 60);
 pub(crate) const SLATE: Color32 = Color32::from_rgba_premultiplied(22, 24, 28, 225);
 /// And this is the light.
 pub(crate) const CHALK: Color32 = Color32::from_rgb(236, 238, 240);
+
+/// What a person clicked on the overlay, and the parts of the map on which a click is the overlay's.
+#[derive(Default)]
+pub(crate) struct OverlayAnswer {
+    pub(crate) commands: Vec<Command>,
+    pub(crate) occupied: Vec<Rect>,
+}
+
+impl OverlayAnswer {
+    /// A place on the map that asks for something when it is clicked.
+    pub(crate) fn clickable(
+        &mut self,
+        ui: &Ui,
+        (place, name): (Rect, &str),
+        hover: &str,
+        command: Command,
+    ) -> Response {
+        let response =
+            ui.interact(place, ui.scope_id().with(name), Sense::click()).on_hover_text(hover);
+        if response.clicked() {
+            self.commands.push(command);
+        }
+        self.occupied.push(place);
+        response
+    }
+}
+
+/// A plate with an edge.
+pub(crate) fn framed(painter: &Painter, plate: Rect, fill: Color32, edge: Color32) {
+    let stroke = Stroke::new(1.0, edge);
+    painter.rect(plate, CornerRadius::same(4), fill, stroke, StrokeKind::Inside);
+}

@@ -31,7 +31,7 @@ fn is_pinned(gpu: &Gpu) -> bool {
 }
 
 /// The window over a map of sky and void.
-fn painted(canvas: &mut Canvas, size_px: [u32; 2], settings: &mut Settings) -> RgbaImage {
+fn painted(canvas: &mut Canvas, size_px: [u32; 2], settings: &mut MapSettings) -> RgbaImage {
     let drew = canvas.draw(&scene_of_size(settings.compare, size_px)).unwrap();
     let told = Told::new();
     let ctx = egui::Context::default();
@@ -61,7 +61,7 @@ fn the_window_looks_as_it_did() {
     if !is_pinned(canvas.gpu()) {
         return;
     }
-    let split = Settings { compare: Compare::Split, ..usual() };
+    let split = MapSettings { compare: Compare::Split, ..usual() };
     for (name, size_px, mut settings) in
         [("window", [820, 640], usual()), ("window-small-split", [400, 300], split)]
     {
@@ -79,7 +79,7 @@ fn a_window_without_its_panel_is_no_match() {
     if !is_pinned(canvas.gpu()) {
         return;
     }
-    let mut hidden = Settings { is_panel_open: false, ..usual() };
+    let mut hidden = MapSettings { is_panel_open: false, ..usual() };
     let found =
         golden().mismatch("window", &painted(&mut canvas, [820, 640], &mut hidden)).unwrap();
     println!("must fail, the panel hidden: {found}");

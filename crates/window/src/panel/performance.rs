@@ -1,9 +1,10 @@
 //! The panel's section that shows what a frame costs.
 
+use corniche_live::{FrameTimes, formatting};
 use corniche_viewer::gpu::PassTimes;
 use egui::{Color32, Grid, Pos2, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::{formatting, frame_times::FrameTimes, window_content::WindowContent};
+use crate::window_content::WindowContent;
 
 /// The upper end of the graph, unless a frame took longer.
 const GRAPH_MS: f64 = 33.3;

@@ -1,14 +1,10 @@
 //! The line at the lower edge of the window, whose items give way when there is little room.
 
-use corniche_live::controls::Mode;
+use corniche_live::{Compare, MapSettings, controls::Mode, formatting};
 use corniche_viewer::gpu::PassTimes;
 use egui::{Color32, FontId, Label, RichText, Ui};
 
-use crate::{
-    formatting,
-    settings::{Compare, Settings},
-    window_content::WindowContent,
-};
+use crate::window_content::WindowContent;
 
 /// Height of the line, points. It never changes, so that the map keeps its place.
 pub(crate) const HEIGHT: f32 = 24.0;
@@ -57,7 +53,7 @@ impl Item {
 /// no room is left out, the least important first.
 pub(crate) fn status_line(
     ui: &mut Ui,
-    settings: &Settings,
+    settings: &MapSettings,
     content: &WindowContent<'_>,
     panel: PanelRoom,
 ) {
@@ -115,7 +111,7 @@ fn happening(content: &WindowContent<'_>, panel: PanelRoom) -> Vec<Item> {
 }
 
 /// The ground under the cursor, the camera, how roads are drawn and how long it takes.
-fn positions(settings: &Settings, content: &WindowContent<'_>) -> Vec<Item> {
+fn positions(settings: &MapSettings, content: &WindowContent<'_>) -> Vec<Item> {
     let mut items = Vec::new();
     match &content.cursor {
         Some(point) => {

@@ -3,21 +3,21 @@
 use std::sync::Arc;
 
 use corniche_geom::TileId;
+use corniche_live::sighted_ground;
 use corniche_viewer::{
-    CameraRequest,
+    SightedGround,
+    gpu::tile_bytes,
     lod::Request,
-    tiles::{BlockingPackage, MapExtent, MapPackage, TileStore},
+    tiles::{BlockingPackage, TileStore},
 };
 
-use crate::{
-    WindowError, WindowRequest,
-    app::{self, ShownPackage},
-};
+use crate::{WindowError, WindowRequest};
 
-/// A package that can be shown, and its tiles for threads that wait for them.
+/// A package that can be shown, its tiles for threads that wait for them, and the ground for its
+/// first view.
 pub(crate) struct OpenedPackage {
-    pub(crate) shown: ShownPackage,
     pub(crate) tiles: Arc<dyn BlockingPackage + Send + Sync>,
+    ground: SightedGround,
 }
 
 impl OpenedPackage {
@@ -30,30 +30,31 @@ impl OpenedPackage {
         request: &WindowRequest,
         tiles: Arc<dyn BlockingPackage + Send + Sync>,
     ) -> Result<Self, WindowError> {
-        app::check(request, tiles.as_ref())?;
+        request.check()?;
         let no_ground = || WindowError::NoGround { name: request.name.clone() };
         let mut store = TileStore::new(tiles.as_ref());
-        let ground = store.coarsest_ground()?.ok_or_else(no_ground)?;
-        let data = tiles.manifest().data_bounds;
-        let extent = if request.camera.is_overview() {
-            store.map_extent(data)?.ok_or_else(no_ground)?
-        } else {
-            MapExtent::of_data(data, ground.height_range_m)
-        };
+        let ground = sighted_ground(&mut store, tiles.manifest(), request.camera)?;
+        let ground = ground.ok_or_else(no_ground)?;
         store.load(&[Request { id: TileId::ROOT, coarseness: f64::INFINITY }])?;
         let root = store.get(TileId::ROOT).ok_or_else(no_ground)?;
-        let package: Arc<dyn MapPackage> = Arc::<dyn BlockingPackage + Send + Sync>::clone(&tiles);
-        let shown = ShownPackage::of(request, package, root, extent)?;
-        Ok(Self { shown, tiles })
+        let heights_m = root.summary.ok_or_else(no_ground)?.height_range_m;
+        let (wanted_bytes, budget_bytes) = (tile_bytes(root), request.budget.gpu_bytes);
+        if wanted_bytes > budget_bytes {
+            return Err(WindowError::OverBudget { wanted_bytes, budget_bytes });
+        }
+        Ok(Self { tiles, ground: SightedGround { heights_m, ..ground } })
     }
 
-    /// True height of the ground at the place that the camera looks at first. `None` without ground there, and where it looks
-    /// at the whole package.
+    /// The ground by which the first camera is set up, with its height at the place that the camera
+    /// looks at.
     ///
     /// # Errors
     /// When the place is too far away from the package, or a tile there cannot be read.
-    pub(crate) fn place_height_m(&self, camera: CameraRequest) -> Result<Option<f64>, WindowError> {
-        let Some(at) = camera.place(self.tiles.manifest())? else { return Ok(None) };
-        Ok(TileStore::new(self.tiles.as_ref()).ground_height_m(at)?)
+    pub(crate) fn ground(&self, request: &WindowRequest) -> Result<SightedGround, WindowError> {
+        let at_place_m = match request.camera.place(self.tiles.manifest())? {
+            Some(at) => TileStore::new(self.tiles.as_ref()).ground_height_m(at)?,
+            None => None,
+        };
+        Ok(SightedGround { at_place_m, ..self.ground })
     }
 }

@@ -1,16 +1,16 @@
 //! Events of the window system, translated into inputs and commands of the app.
 
-use corniche_live::controls::{Button, Input, Key, KeyState, Modifiers};
+use corniche_live::{
+    Command, DrawingCommand,
+    controls::{Button, Input, Key, KeyState, Modifiers},
+};
 use glam::DVec2;
 use winit::{
-    event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent},
-    keyboard::{KeyCode, ModifiersState, NamedKey, PhysicalKey},
+    event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent},
+    keyboard::{Key as LogicalKey, ModifiersState, NamedKey, PhysicalKey},
 };
 
-use crate::{
-    app::App,
-    command::{Command, DrawingCommand, Shot},
-};
+use crate::app::App;
 
 /// Scrolling by this much on a touchpad counts as a notch of a wheel.
 const POINTS_PER_NOTCH: f64 = 50.0;
@@ -29,7 +29,7 @@ pub(crate) struct Inputs {
 /// itself.
 pub(crate) fn is_panel_key(event: &WindowEvent) -> bool {
     matches!(event, WindowEvent::KeyboardInput { event, .. }
-        if event.logical_key == winit::keyboard::Key::Named(NamedKey::Tab))
+        if event.logical_key == LogicalKey::Named(NamedKey::Tab))
 }
 
 /// Ctrl Q ends the program, also where the window has no frame with a button for it.
@@ -63,9 +63,8 @@ impl EndKey {
     }
 }
 
-fn is_q(logical: &winit::keyboard::Key) -> bool {
-    use winit::keyboard::Key as Logical;
-    matches!(logical, Logical::Character(letter) if letter.eq_ignore_ascii_case("q"))
+fn is_q(logical: &LogicalKey) -> bool {
+    matches!(logical, LogicalKey::Character(letter) if letter.eq_ignore_ascii_case("q"))
 }
 
 impl Inputs {
@@ -73,7 +72,7 @@ impl Inputs {
     /// event is handed on.
     pub(crate) fn hand_on_move(&mut self, app: &mut App) {
         if let Some((at_px, moved_s)) = self.moved.take() {
-            app.input(&Input::Move { at_px }, moved_s);
+            app.desk.input(&Input::Move { at_px }, moved_s);
         }
     }
 
@@ -93,17 +92,17 @@ impl Inputs {
         match event {
             WindowEvent::ModifiersChanged(modifiers) => {
                 self.modifiers = held(modifiers.state());
-                app.input(&Input::Modify { modifiers: self.modifiers }, now_s);
+                app.desk.input(&Input::Modify { modifiers: self.modifiers }, now_s);
                 false
             }
             WindowEvent::CursorMoved { position, .. } => {
                 self.cursor_px = DVec2::new(position.x, position.y);
                 self.moved = Some((self.cursor_px, now_s));
-                app.point_at(Some(self.cursor_px));
+                app.desk.session.cursor_px = Some(self.cursor_px);
                 true
             }
             WindowEvent::CursorLeft { .. } => {
-                app.point_at(None);
+                app.desk.session.cursor_px = None;
                 true
             }
             WindowEvent::MouseInput { state, button, .. } => {
@@ -111,7 +110,7 @@ impl Inputs {
             }
             WindowEvent::MouseWheel { delta, .. } => self.wheel(*delta, app, ui, now_s),
             WindowEvent::Focused(false) => {
-                app.input(&Input::LetGo, now_s);
+                app.desk.input(&Input::LetGo, now_s);
                 true
             }
             WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
@@ -142,7 +141,7 @@ impl Inputs {
         };
         let is_maps = app.is_map(ui, self.cursor_px);
         if is_maps {
-            app.input(&Input::Wheel { steps, at_px: self.cursor_px }, now_s);
+            app.desk.input(&Input::Wheel { steps, at_px: self.cursor_px }, now_s);
         }
         is_maps
     }
@@ -163,130 +162,62 @@ impl Inputs {
         };
         match state {
             ElementState::Pressed if app.is_map(ui, self.cursor_px) => {
-                app.press(button, self.cursor_px, self.modifiers, now_s);
+                app.desk.press(button, self.cursor_px, self.modifiers, now_s);
             }
             ElementState::Pressed => return false,
-            ElementState::Released => app.input(&Input::Release { button }, now_s),
+            ElementState::Released => app.desk.input(&Input::Release { button }, now_s),
         }
         true
     }
 
-    fn key(&self, event: &winit::event::KeyEvent, app: &mut App, now_s: f64) -> bool {
+    fn key(&self, event: &KeyEvent, app: &mut App, now_s: f64) -> bool {
         let state = match event.state {
             ElementState::Pressed => KeyState::Pressed,
             ElementState::Released => KeyState::Released,
         };
+        let (sign, code) = names(&event.logical_key, event.physical_key);
         // A release is always the camera's: the key may have been pressed before Control was.
         if state == KeyState::Pressed
             && let Some(command) =
-                drawing_command(&event.logical_key, self.modifiers, app.is_drawing())
+                DrawingCommand::of_key(&sign, self.modifiers, app.desk.drawing.is_on())
         {
-            let is_once = matches!(
-                command,
-                DrawingCommand::Toggle
-                    | DrawingCommand::Turn
-                    | DrawingCommand::Smooth
-                    | DrawingCommand::Save
-            );
-            if !(event.repeat && is_once) {
+            if !(event.repeat && command.is_once()) {
                 app.command(Command::Draw(command), now_s);
             }
             return true;
         }
-        if let Some(key) = moving_key(&event.logical_key, event.physical_key) {
-            app.input(&Input::Key { key, state, modifiers: self.modifiers }, now_s);
+        if let Some(key) = Key::of(&sign, &code) {
+            app.desk.input(&Input::Key { key, state, modifiers: self.modifiers }, now_s);
             return true;
         }
         if state == KeyState::Released || event.repeat {
             return false;
         }
-        let Some(command) = command(&event.logical_key, self.modifiers) else { return false };
+        let Some(command) = Command::of_key(&sign, self.modifiers) else { return false };
         app.command(command, now_s);
         true
     }
+}
+
+/// What is printed on a key, and where it is on the keyboard, by the names of the W3C: the window
+/// library has the same.
+fn names(logical: &LogicalKey, physical: PhysicalKey) -> (String, String) {
+    let sign = match logical {
+        LogicalKey::Character(sign) => sign.to_string(),
+        LogicalKey::Named(name) => format!("{name:?}"),
+        _ => String::new(),
+    };
+    let code = match physical {
+        PhysicalKey::Code(code) => format!("{code:?}"),
+        PhysicalKey::Unidentified(_) => String::new(),
+    };
+    (sign, code)
 }
 
 fn held(state: ModifiersState) -> Modifiers {
     Modifiers {
         shift: state.contains(ModifiersState::SHIFT),
         control: state.contains(ModifiersState::CONTROL),
-    }
-}
-
-/// The key that moves the camera. Arrows, + and − are told by what is printed on them, the keys of fly mode by their
-/// position on the keyboard.
-fn moving_key(logical: &winit::keyboard::Key, physical: PhysicalKey) -> Option<Key> {
-    use winit::keyboard::Key as Logical;
-    let named = match logical {
-        Logical::Named(NamedKey::ArrowLeft) => Some(Key::Left),
-        Logical::Named(NamedKey::ArrowRight) => Some(Key::Right),
-        Logical::Named(NamedKey::ArrowUp) => Some(Key::Up),
-        Logical::Named(NamedKey::ArrowDown) => Some(Key::Down),
-        Logical::Character(sign) => match sign.as_str() {
-            "+" | "=" => Some(Key::ZoomIn),
-            "-" | "_" => Some(Key::ZoomOut),
-            _ => None,
-        },
-        _ => None,
-    };
-    named.or(match physical {
-        PhysicalKey::Code(KeyCode::KeyW) => Some(Key::Ahead),
-        PhysicalKey::Code(KeyCode::KeyS) => Some(Key::Back),
-        PhysicalKey::Code(KeyCode::KeyA) => Some(Key::StrafeLeft),
-        PhysicalKey::Code(KeyCode::KeyD) => Some(Key::StrafeRight),
-        PhysicalKey::Code(KeyCode::KeyE) => Some(Key::Rise),
-        PhysicalKey::Code(KeyCode::KeyQ) => Some(Key::Sink),
-        _ => None,
-    })
-}
-
-/// The key that does something to drawn lines. With Control, keys of fly mode are these.
-fn drawing_command(
-    logical: &winit::keyboard::Key,
-    modifiers: Modifiers,
-    is_drawing: bool,
-) -> Option<DrawingCommand> {
-    use winit::keyboard::Key as Logical;
-    if let Logical::Character(letter) = logical {
-        return match (letter.to_lowercase().as_str(), modifiers) {
-            ("l", Modifiers { control: false, .. }) => Some(DrawingCommand::Toggle),
-            ("z", Modifiers { control: true, shift: false }) => Some(DrawingCommand::Undo),
-            ("z" | "y", Modifiers { control: true, .. }) => Some(DrawingCommand::Redo),
-            ("s", Modifiers { control: true, .. }) => Some(DrawingCommand::Save),
-            ("g", Modifiers { control: false, .. }) if is_drawing => Some(DrawingCommand::Turn),
-            ("m", Modifiers { control: false, .. }) if is_drawing => Some(DrawingCommand::Smooth),
-            _ => None,
-        };
-    }
-    match logical {
-        Logical::Named(NamedKey::Enter) if is_drawing => Some(DrawingCommand::EndLine),
-        Logical::Named(NamedKey::Delete | NamedKey::Backspace) if is_drawing => {
-            let is_line = modifiers.shift;
-            Some(if is_line { DrawingCommand::RemoveLine } else { DrawingCommand::RemovePoint })
-        }
-        _ => None,
-    }
-}
-
-fn command(logical: &winit::keyboard::Key, modifiers: Modifiers) -> Option<Command> {
-    use winit::keyboard::Key as Logical;
-    match logical {
-        Logical::Named(NamedKey::Home) => Some(Command::Reset),
-        Logical::Named(NamedKey::Tab) => Some(Command::TogglePanel),
-        Logical::Named(NamedKey::Escape) => Some(Command::CloseHelp),
-        Logical::Character(letter) => match letter.to_lowercase().as_str() {
-            "n" => Some(Command::NorthUp),
-            "r" => Some(Command::Reset),
-            "f" => Some(Command::ToggleFly),
-            "t" => Some(Command::ToggleAbove),
-            "c" => Some(Command::ToggleRecording),
-            "v" => Some(Command::CopyView),
-            "?" => Some(Command::ToggleHelp),
-            "p" if modifiers.shift => Some(Command::Take(Shot::Window)),
-            "p" => Some(Command::Take(Shot::Map)),
-            _ => None,
-        },
-        _ => None,
     }
 }
 

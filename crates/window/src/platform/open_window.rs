@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use corniche_live::LoaderThreads;
+use corniche_live::{ClockS, LoaderThreads, NotSaved, Redraw};
 use winit::{
     event::WindowEvent,
     event_loop::{ActiveEventLoop, EventLoopProxy},
@@ -11,15 +11,15 @@ use winit::{
 
 use super::{
     event_loop::{News, new_window},
-    files::FileWriter,
     first_tiles::OpenedPackage,
     inputs::{self, EndKey, Inputs},
-    screen::{Acquired, Screen},
+    screen::{Painted, Screen},
 };
 use crate::{
-    ClockS, NotSaved, WindowError, WindowRequest,
-    app::{App, AppPlatform, FrameInput, Redraw},
+    WindowError, WindowRequest,
+    app::{App, AppPlatform, FrameInput},
     canvas::Canvas,
+    files::FileWriter,
 };
 
 /// A device that is lost again this soon is taken to be lost for ever.
@@ -62,7 +62,7 @@ impl OpenWindow {
         let size_px = screen.size_px().map(|side| side.max(1));
         let ui = new_ui(None);
         let pixels_per_point = egui_winit::pixels_per_point(&ui, &window);
-        let files = Box::new(FileWriter::new(request.folder.clone(), Arc::clone(&wake)));
+        let files = FileWriter::new(request.folder.clone(), Arc::clone(&wake));
         let threads = LoaderThreads::usual_number();
         let room = request.budget.tiles_in_flight;
         let loader = LoaderThreads::new(&package.tiles, threads, room, &wake)
@@ -70,16 +70,9 @@ impl OpenWindow {
         let begun = std::time::Instant::now();
         let clock_s: ClockS = Box::new(move || begun.elapsed().as_secs_f64());
         let platform = AppPlatform { loader: Box::new(loader), files, clock_s };
-        let place_height_m = package.place_height_m(request.camera)?;
-        let app = App::new(
-            request,
-            package.shown,
-            place_height_m,
-            &canvas,
-            platform,
-            size_px,
-            pixels_per_point,
-        )?;
+        let ground = package.ground(&request)?;
+        let screen_size = (size_px, pixels_per_point);
+        let app = App::new(request, package.tiles, ground, canvas.gpu(), platform, screen_size)?;
         let ui_state = new_ui_state(&ui, &window, &canvas);
         window.request_redraw();
         Ok(Self {
@@ -115,11 +108,14 @@ impl OpenWindow {
 
     /// Does what is due at this time; returns when something is due next without any event.
     pub(crate) fn wake(&mut self, now_s: f64) -> Option<f64> {
-        if self.app.reload(now_s) || self.due_s.is_some_and(|due_s| due_s <= now_s) {
+        if self.app.desk.reload(now_s) || self.due_s.is_some_and(|due_s| due_s <= now_s) {
             self.due_s = None;
             self.window.request_redraw();
         }
-        [self.due_s, self.app.reload_due_s()].into_iter().flatten().reduce(f64::min)
+        [self.due_s, self.app.desk.session.styles.reload_due_s()]
+            .into_iter()
+            .flatten()
+            .reduce(f64::min)
     }
 
     /// The window closes: saves what is still to be saved.
@@ -174,24 +170,18 @@ impl OpenWindow {
         };
         let frame = self.app.frame(&mut self.canvas, &self.ui, input)?;
         self.ui_state.handle_platform_output(&self.window, frame.platform);
-        let redraw = match self.screen.acquire(&self.canvas, &self.window)? {
-            Acquired::Texture(texture) => {
-                let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-                self.canvas.paint(&frame.primitives, &frame.screen, &view);
-                self.window.pre_present_notify();
-                self.canvas.gpu().queue().present(texture);
-                frame.redraw
-            }
-            Acquired::Later => Redraw::Now,
+        let shown = (&frame.primitives[..], &frame.screen);
+        let redraw = match (self.screen.paint(&mut self.canvas, &self.window, shown)?, frame.redraw)
+        {
+            (Painted::Later, _) => Redraw::Now,
             // A frame that is due at some time stays due.
-            Acquired::Hidden => match frame.redraw {
-                Redraw::Now => Redraw::Asked,
-                later => later,
-            },
+            (Painted::Hidden, Redraw::Now) => Redraw::Asked,
+            (_, redraw) => redraw,
         };
         self.canvas.free_textures(&frame.unused_textures);
         if let Some(what) = self.canvas.gpu().take_fault() {
-            self.app.fault(&what);
+            let told = format!("the graphics device could not do its work: {what}");
+            self.app.desk.notices.warn(told);
         }
         self.due_s = None;
         match redraw {
@@ -213,7 +203,7 @@ impl OpenWindow {
         // The panel's textures were on the card too; a new context uploads them again.
         self.ui = new_ui(Some(&self.ui));
         self.ui_state = new_ui_state(&self.ui, &self.window, &self.canvas);
-        self.app.begin_again(&self.canvas);
+        self.app.begin_again();
         self.window.request_redraw();
         Ok(())
     }

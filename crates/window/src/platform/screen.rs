@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use corniche_viewer::gpu::Gpu;
+use egui::ClippedPrimitive;
+use egui_wgpu::ScreenDescriptor;
 use wgpu::{
     Backends, CurrentSurfaceTexture, ErrorFilter, Instance, InstanceDescriptor, Surface,
     SurfaceConfiguration, SurfaceTexture, TextureFormat,
@@ -22,12 +24,22 @@ pub(crate) struct Screen {
 }
 
 /// What the surface gives to paint into.
-pub(crate) enum Acquired {
-    /// A texture.
+enum Acquired {
     Texture(SurfaceTexture),
     /// Nothing now; it is worth trying again at once.
     Later,
     /// Nothing while the window is hidden; an event tells when that changes.
+    Hidden,
+}
+
+/// What came of painting a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Painted {
+    /// It is shown.
+    Shown,
+    /// Nothing was painted; it is worth trying again at once.
+    Later,
+    /// Nothing is painted while the window is hidden.
     Hidden,
 }
 
@@ -96,12 +108,27 @@ impl Screen {
         Ok(())
     }
 
-    /// Gets a texture to paint into. If the surface is outdated or lost, it is configured or made again, a few times at most.
-    pub(crate) fn acquire(
+    /// Paints what was laid out, if the surface gives something to paint into.
+    pub(crate) fn paint(
         &mut self,
-        canvas: &Canvas,
+        canvas: &mut Canvas,
         window: &Arc<Window>,
-    ) -> Result<Acquired, WindowError> {
+        (primitives, screen): (&[ClippedPrimitive], &ScreenDescriptor),
+    ) -> Result<Painted, WindowError> {
+        let texture = match self.acquire(canvas, window)? {
+            Acquired::Texture(texture) => texture,
+            Acquired::Later => return Ok(Painted::Later),
+            Acquired::Hidden => return Ok(Painted::Hidden),
+        };
+        let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        canvas.paint(primitives, screen, &view);
+        window.pre_present_notify();
+        canvas.gpu().queue().present(texture);
+        Ok(Painted::Shown)
+    }
+
+    /// Gets a texture to paint into. If the surface is outdated or lost, it is configured or made again, a few times at most.
+    fn acquire(&mut self, canvas: &Canvas, window: &Arc<Window>) -> Result<Acquired, WindowError> {
         let gpu = canvas.gpu();
         for _ in 0..3 {
             if !self.is_configured {

@@ -22,7 +22,7 @@ use winit::{
 use super::{
     event_loop::{News, new_event_loop, new_window},
     inputs::EndKey,
-    screen::{Acquired, Screen},
+    screen::{Painted, Screen},
 };
 use crate::{WindowError, canvas::Canvas};
 
@@ -192,15 +192,9 @@ impl Open {
         let screen = ScreenDescriptor { size_in_pixels: size_px, pixels_per_point: 1.0 };
         let primitives = self.ui.tessellate(std::mem::take(&mut output.shapes), 1.0);
         let unused = self.canvas.take_textures(output.textures_delta);
-        match self.screen.acquire(&self.canvas, &self.window)? {
-            Acquired::Texture(texture) => {
-                let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-                self.canvas.paint(&primitives, &screen, &view);
-                self.window.pre_present_notify();
-                self.canvas.gpu().queue().present(texture);
-            }
-            Acquired::Later => self.window.request_redraw(),
-            Acquired::Hidden => {}
+        let painted = self.screen.paint(&mut self.canvas, &self.window, (&primitives, &screen))?;
+        if painted == Painted::Later {
+            self.window.request_redraw();
         }
         self.canvas.free_textures(&unused);
         match self.canvas.gpu().take_fault() {

@@ -1,0 +1,146 @@
+//! What a page says and is told of a session, as JSON.
+
+use corniche_styles::Rgb;
+use corniche_tileset::FORMAT_VERSION;
+use corniche_viewer::{
+    BoundaryLines,
+    flight::{Flight, FlightRecord, WorkingCrs},
+    gpu::Gpu,
+    range,
+};
+use serde_json::{Value, json};
+
+use crate::{controls::Mode, map_canvas::Counts, session::Session, view_record::ViewRecord};
+
+/// What a frame has left to do beside what the session knows of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FrameRest {
+    /// Whether another frame is needed at once.
+    pub is_busy: bool,
+    /// How many of the tiles that are being loaded will not come soon.
+    pub troubled: usize,
+}
+
+impl Session {
+    /// What is known of the map before anything is drawn; `labels` are what the roads of each class
+    /// are called.
+    #[must_use]
+    pub fn about(&self, labels: &[String], gpu: &Gpu) -> Value {
+        let (manifest, look) = (self.manifest(), self.look());
+        let entry = |label: &str, color| json!({ "label": label, "color": css(color) });
+        let roads = labels.iter().zip(&look.roads);
+        let roads = roads.map(|(label, road)| entry(label, road.bands.main_color()));
+        let boundaries = BoundaryLines::of(manifest, &look).into_iter();
+        let boundaries = boundaries.map(|lines| entry(&lines.label, lines.style.color));
+        json!({
+            "attribution": manifest.attribution,
+            "bounds": manifest.wgs84_bounds.to_array(),
+            "heights": self.height_range_m(),
+            "tiles": manifest.levels.iter().map(|level| level.tiles).sum::<u64>(),
+            "levels": manifest.levels.len(),
+            "classes": roads.collect::<Vec<Value>>(),
+            "boundaries": boundaries.collect::<Vec<Value>>(),
+            "has": {
+                "photo": manifest.settings.photo.is_some(),
+                "areas": manifest.areas.is_some(),
+                "boundaries": manifest.boundaries.is_some(),
+            },
+            "adapter": gpu.adapter_name(),
+            "is_software": gpu.is_software(),
+            "max_side_px": gpu.max_side_px(),
+            "format_version": FORMAT_VERSION,
+        })
+    }
+
+    /// Moves to a place as JSON, in what is `size_px` large: at once, or in some time.
+    ///
+    /// # Errors
+    /// In words, when the text is no place, or there is no ground.
+    pub fn go_to_record(
+        &mut self,
+        place: &str,
+        size_px: [u32; 2],
+        is_jump: bool,
+        now_s: f64,
+    ) -> Result<(), String> {
+        let place: ViewRecord = serde_json::from_slice(place.as_bytes())
+            .map_err(|error| format!("the place: {error}"))?;
+        let request = place.request();
+        range::check_camera(request).map_err(|error| error.to_string())?;
+        let gone = if is_jump {
+            self.jump_to(request, size_px)
+        } else {
+            self.travel_to(request, size_px, now_s)
+        };
+        gone.map_err(|error| error.to_string())
+    }
+
+    /// Ends the recording; the flight as JSON, with the fields of its TOML.
+    ///
+    /// # Errors
+    /// In words, when nothing was recorded.
+    pub fn stop_recording(&mut self, now_s: f64) -> Result<String, String> {
+        let flight = self.flights.stop_recording(now_s).ok_or("no flight is being recorded")?;
+        let flight = flight.map_err(|error| error.to_string())?;
+        let record = flight.record(WorkingCrs::of(self.manifest()));
+        serde_json::to_string(&record).map_err(|error| error.to_string())
+    }
+
+    /// Plays a flight: JSON with the fields of its TOML.
+    ///
+    /// # Errors
+    /// In words, when the text is none for this package.
+    pub fn play(&mut self, flight: &str, now_s: f64) -> Result<(), String> {
+        let record: FlightRecord = serde_json::from_slice(flight.as_bytes())
+            .map_err(|error| format!("this is no flight: {error}"))?;
+        let manifest = self.manifest();
+        let flight = Flight::of_record(&record, WorkingCrs::of(manifest), &manifest.coordinates);
+        self.flights.play(flight.map_err(|error| error.to_string())?, now_s);
+        Ok(())
+    }
+
+    /// What came of a frame, and whether nothing moves and nothing is loaded any more.
+    #[must_use]
+    pub fn report(
+        &self,
+        counts: Counts,
+        rest: FrameRest,
+        pixels_per_point: f64,
+        now_s: f64,
+    ) -> (Value, bool) {
+        let Self { tiles, camera, flights, probe, .. } = self;
+        let (drawn, missing) = (tiles.drawn().len(), tiles.missing());
+        let (loading, is_full) = (tiles.loading(), tiles.is_full());
+        let point_scale = self.manifest().point_scale;
+        let metres_per_pixel = probe.middle_pixel_m().map(|pixel_m| pixel_m / point_scale);
+        let is_playing = flights.is_playing();
+        // A recording needs frames only while something moves.
+        let is_busy = camera.navigator.is_moving() || is_playing || rest.is_busy;
+        let has_all = missing == 0 || is_full || rest.troubled > 0;
+        let is_settled = !is_busy && has_all && loading == rest.troubled;
+        let share_there = drawn as f64 / (drawn + missing).max(1) as f64;
+        let report = json!({
+            "next": if is_busy { "now" } else { "asked" },
+            "is_settled": is_settled,
+            "view": ViewRecord::of(self.request()),
+            "cursor": probe.cursor().map(|point| point.record()),
+            "metres_per_pixel": metres_per_pixel,
+            "metres_per_point": metres_per_pixel.map(|pixel_m| pixel_m * pixels_per_point),
+            "mode": if camera.navigator.mode() == Mode::Fly { "fly" } else { "map" },
+            "tiles": { "drawn": drawn, "missing": missing, "loading": loading, "full": is_full },
+            "triangles": counts.triangles,
+            "segments": counts.segments,
+            "gpu_bytes": tiles.bytes_of_budget(),
+            "progress": if is_full { 1.0 } else { share_there },
+            "recording_s": flights.recording_s(now_s),
+            "is_playing": is_playing,
+        });
+        (report, is_settled)
+    }
+}
+
+/// A colour as in CSS: `#rrggbb`.
+fn css(color: Rgb) -> String {
+    let [r, g, b] = color.map(|part| (part * 255.0).round() as u8);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}

@@ -1,0 +1,194 @@
+//! What a person can change of a map, as plain values.
+
+use std::collections::BTreeSet;
+
+use corniche_roads::FunctionalRoadClass;
+use corniche_styles::Style;
+use corniche_tileset::Manifest;
+use corniche_viewer::{
+    RoadMethod, RoadOptions, Wireframe,
+    lod::{Fineness, Quality},
+    tiles::TileDecoder,
+};
+use serde::{Deserialize, Serialize};
+
+/// Whether a layer is drawn, where the package has it: areas, or boundaries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Visibility {
+    /// The classes that the style draws are shown.
+    Shown,
+    /// No class is shown.
+    Hidden,
+}
+
+/// Whether one method is shown, or two are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Compare {
+    /// One method.
+    Off,
+    /// GEO to the left of a divider, SV to the right.
+    Split,
+    /// Where GEO and SV show different classes.
+    Difference,
+}
+
+impl Compare {
+    /// The options of the roads for each picture: one picture, or GEO and SV.
+    #[must_use]
+    pub fn pictures(self, roads: RoadOptions) -> Vec<RoadOptions> {
+        match self {
+            Self::Off => vec![roads],
+            Self::Split | Self::Difference => [RoadMethod::Geometry, RoadMethod::ShadowVolumes]
+                .map(|method| RoadOptions { method, ..roads })
+                .into(),
+        }
+    }
+}
+
+/// Whether the choice of tiles follows the camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Refinement {
+    /// It follows the camera.
+    Live,
+    /// The tiles that are drawn now stay, wherever the camera goes, so that the choice can be looked at from elsewhere.
+    Frozen,
+}
+
+/// Everything that a person can change of a map, and of the panel beside it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapSettings {
+    /// How roads are drawn.
+    pub roads: RoadOptions,
+    /// Whether one method is shown, or two are compared.
+    pub compare: Compare,
+    /// Position of the divider, as a share of the map's width.
+    pub divider_share: f32,
+    /// Factors on the style's widths, class 0 first.
+    pub width_factors: [f32; FunctionalRoadClass::COUNT],
+    /// Place of the style in the list of styles.
+    pub style: usize,
+    /// How strongly photos are seen, 0 to 1; `None`: as the style says.
+    pub photo: Option<f32>,
+    /// Whether areas are drawn as the style says, or not at all.
+    pub areas: Visibility,
+    /// Whether boundaries are drawn as the style says, or not at all.
+    pub boundaries: Visibility,
+    /// Files of lines that are not shown, by their numbers.
+    pub hidden_overlays: BTreeSet<usize>,
+    /// Factor on heights; 1 is true.
+    pub exaggeration: f64,
+    /// A tile is refined while its error looks larger than this.
+    pub screen_space_error_px: f64,
+    /// A tile is refined while one of its cells looks larger than this.
+    pub cell_px: f64,
+    /// Samples per pixel along each side.
+    pub samples_per_side: u32,
+    /// Whether the edges of triangles are drawn.
+    pub is_wireframe: bool,
+    /// Whether the choice of tiles follows the camera.
+    pub refinement: Refinement,
+    /// Whether the panel is open.
+    pub is_panel_open: bool,
+    /// Whether the page of keys and mouse is open.
+    pub is_help_open: bool,
+    /// What is typed as the place to go to.
+    pub place: String,
+}
+
+/// Ranges of the settings in a panel.
+pub mod range {
+    use std::ops::RangeInclusive;
+
+    /// Factors on heights.
+    pub const EXAGGERATION: RangeInclusive<f64> = 0.25..=8.0;
+    /// Errors of the ground on the screen, pixels.
+    pub const SCREEN_SPACE_ERROR_PX: RangeInclusive<f64> = 0.5..=8.0;
+    /// Samples per pixel along each side.
+    pub const SAMPLES_PER_SIDE: RangeInclusive<u32> =
+        1..=corniche_viewer::gpu::MAX_SAMPLES_PER_SIDE;
+    /// Factors on the widths of classes.
+    pub const WIDTH_FACTOR: RangeInclusive<f32> = 0.25..=4.0;
+    /// How strongly photos are seen.
+    pub const PHOTO: RangeInclusive<f32> = 0.0..=1.0;
+    /// Positions of the divider, as shares of the map's width.
+    pub const DIVIDER_SHARE: RangeInclusive<f32> = 0.05..=0.95;
+}
+
+impl MapSettings {
+    /// What is shown where nothing else is asked for: roads like these, everything of the first
+    /// style, true heights.
+    #[must_use]
+    pub fn usual(roads: RoadOptions) -> Self {
+        Self {
+            roads,
+            compare: Compare::Off,
+            divider_share: 0.5,
+            width_factors: [1.0; FunctionalRoadClass::COUNT],
+            style: 0,
+            photo: None,
+            areas: Visibility::Shown,
+            boundaries: Visibility::Shown,
+            hidden_overlays: BTreeSet::new(),
+            exaggeration: 1.0,
+            screen_space_error_px: 2.0,
+            cell_px: f64::INFINITY,
+            samples_per_side: 2,
+            is_wireframe: false,
+            refinement: Refinement::Live,
+            is_panel_open: true,
+            is_help_open: false,
+            place: String::new(),
+        }
+    }
+
+    /// A style with its widths multiplied by their factors, photos as strong as is wanted, and without areas and lines of files that are not.
+    #[must_use]
+    pub fn applied_to(&self, style: &Style) -> Style {
+        let mut applied = style.clone();
+        if self.areas == Visibility::Hidden {
+            applied = applied.without_areas();
+        }
+        if self.boundaries == Visibility::Hidden {
+            applied = applied.without_boundaries();
+        }
+        applied.photo = self.photo.unwrap_or(applied.photo);
+        for (number, line) in applied.overlays.iter_mut().enumerate() {
+            if self.hidden_overlays.contains(&number) {
+                line.opacity = 0.0;
+            }
+        }
+        for (road, factor) in applied.roads.iter_mut().zip(self.width_factors) {
+            *road = road.widened(factor);
+        }
+        applied
+    }
+
+    /// How finely the ground of a package is drawn in this style.
+    #[must_use]
+    pub fn quality(&self, manifest: &Manifest, style: &Style) -> Quality {
+        let Self { screen_space_error_px, cell_px, .. } = *self;
+        let fineness = Fineness { screen_space_error_px, cell_px };
+        Quality::of_package(manifest, fineness, style, self.roads, self.exaggeration)
+    }
+
+    /// What is read of tiles to show them in this style.
+    #[must_use]
+    pub fn decoder(&self, style: &Style) -> TileDecoder {
+        let look = self.applied_to(style);
+        match self.compare {
+            Compare::Off => TileDecoder::default().for_look(self.roads.method, &look),
+            Compare::Split | Compare::Difference => TileDecoder::default().with_layers_of(&look),
+        }
+    }
+
+    /// Whether the edges of triangles are drawn, in the viewer's words.
+    #[must_use]
+    pub fn wireframe(&self) -> Wireframe {
+        if self.is_wireframe { Wireframe::Shown } else { Wireframe::Hidden }
+    }
+}
+
+#[cfg(test)]
+#[path = "settings_tests.rs"]
+mod tests;

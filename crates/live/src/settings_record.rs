@@ -1,0 +1,191 @@
+//! Settings of a map as JSON: what a page can change.
+
+use corniche_roads::FunctionalRoadClass;
+use corniche_viewer::{ClassSet, OutOfRange, Outline, RoadMethod, RoadOptions, range};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::{
+    controls::Inertia,
+    settings::{Compare, MapSettings, Visibility},
+};
+
+/// Settings to change; those that are left out stay as they are.
+pub type SettingChanges = Map<String, Value>;
+
+/// Settings for which `null` is a value. For others it says nothing.
+const WITH_NULL: [&str; 2] = ["photo", "cell_px"];
+
+/// How roads are drawn.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "RoadMethod")]
+enum RoadMethodName {
+    #[serde(rename = "geo")]
+    Geometry,
+    #[serde(rename = "sv")]
+    ShadowVolumes,
+    #[serde(rename = "none")]
+    None,
+}
+
+/// The edge around roads.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Outline")]
+enum OutlineName {
+    #[serde(rename = "style")]
+    OfStyle,
+    #[serde(rename = "none")]
+    None,
+    #[serde(rename = "3")]
+    Kernel3,
+    #[serde(rename = "5")]
+    Kernel5,
+}
+
+/// Everything that a page can change.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "they are boxes to tick, independent of each other"
+)]
+pub struct SettingsRecord {
+    /// How roads are drawn, if one method is shown.
+    #[serde(with = "RoadMethodName")]
+    pub roads: RoadMethod,
+    /// Whether one method is shown, or both are compared.
+    pub compare: Compare,
+    /// Position of the divider, as a share of the canvas's width.
+    pub divider: f32,
+    /// Which classes are drawn, 0 first.
+    pub classes: [bool; FunctionalRoadClass::COUNT],
+    /// Factors on the style's widths, class 0 first.
+    pub widths: [f32; FunctionalRoadClass::COUNT],
+    /// The edge around roads.
+    #[serde(with = "OutlineName")]
+    pub outline: Outline,
+    /// The name of a style that comes with the program, or the address of an own one that the page keeps.
+    pub style: String,
+    /// How strongly photos are seen, 0 to 1; `None`: as the style says.
+    pub photo: Option<f32>,
+    /// Whether areas are drawn as the style says.
+    pub areas: bool,
+    /// Whether boundaries are drawn as the style says.
+    pub boundaries: bool,
+    /// Factor on heights; 1 is true.
+    pub exaggeration: f64,
+    /// A tile is refined while its error looks larger than this, pixels.
+    pub error_px: f64,
+    /// A tile is refined while one of its cells looks larger than this, pixels; `None`: cells do not count.
+    pub cell_px: Option<f64>,
+    /// Samples per pixel along each side.
+    pub samples: u32,
+    /// Whether the edges of triangles are drawn.
+    pub wireframe: bool,
+    /// Whether movements slow down gradually.
+    pub inertia: bool,
+}
+
+impl Default for SettingsRecord {
+    /// The settings with which `corniche render` draws without options.
+    fn default() -> Self {
+        Self {
+            roads: RoadMethod::Geometry,
+            compare: Compare::Off,
+            divider: 0.5,
+            classes: [true; FunctionalRoadClass::COUNT],
+            widths: [1.0; FunctionalRoadClass::COUNT],
+            outline: Outline::OfStyle,
+            style: "road-atlas".to_owned(),
+            photo: None,
+            areas: true,
+            boundaries: true,
+            exaggeration: 1.0,
+            error_px: 2.0,
+            cell_px: Some(2.0),
+            samples: 2,
+            wireframe: false,
+            inertia: true,
+        }
+    }
+}
+
+impl SettingsRecord {
+    /// These settings with some of them changed: a JSON object with the fields to change.
+    ///
+    /// # Errors
+    /// In words, when the text is no such object or a value is out of its range.
+    pub fn changed_by(&self, changes: &str) -> Result<Self, String> {
+        let changes = serde_json::from_slice(changes.as_bytes());
+        self.changed(changes.map_err(|error| format!("settings: {error}"))?)
+    }
+
+    /// The same of changes that were read already.
+    ///
+    /// # Errors
+    /// In words, when there is no such setting or a value is out of its range.
+    pub fn changed(&self, mut changes: SettingChanges) -> Result<Self, String> {
+        let told = |error: serde_json::Error| format!("settings: {error}");
+        changes.retain(|name, value| !value.is_null() || WITH_NULL.contains(&name.as_str()));
+        let mut all = serde_json::to_value(self).map_err(told)?;
+        if let Value::Object(all) = &mut all {
+            all.extend(changes);
+        }
+        let changed: Self = serde_json::from_value(all).map_err(told)?;
+        changed.check()?;
+        Ok(changed)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let told = |error: OutOfRange| error.to_string();
+        let cell_px = self.cell_px.unwrap_or(f64::INFINITY);
+        range::check_ground(self.error_px, cell_px, self.exaggeration).map_err(told)?;
+        range::check_supersampling(self.samples).map_err(told)?;
+        let photo = self.photo.unwrap_or(0.0);
+        for (name, share) in [("a divider", self.divider), ("a photo", photo)] {
+            range::within(name, share.into(), 0.0..=1.0, "0 to 1").map_err(told)?;
+        }
+        for factor in self.widths {
+            range::within("a width factor", factor.into(), 0.01..=100.0, "0.01 to 100")
+                .map_err(told)?;
+        }
+        Ok(())
+    }
+
+    /// Whether movements slow down gradually, in the words of the controls.
+    #[must_use]
+    pub fn inertia(&self) -> Inertia {
+        if self.inertia { Inertia::On } else { Inertia::Off }
+    }
+
+    /// The same settings for a session.
+    #[must_use]
+    pub fn of_session(&self) -> MapSettings {
+        let visibility = |is_shown| if is_shown { Visibility::Shown } else { Visibility::Hidden };
+        let all = FunctionalRoadClass::all().zip(self.classes);
+        let shown = all.filter_map(|(class, is_shown)| is_shown.then_some(class));
+        let roads = RoadOptions {
+            classes: shown.collect::<ClassSet>(),
+            outline: self.outline,
+            ..RoadOptions::of(self.roads)
+        };
+        MapSettings {
+            compare: self.compare,
+            divider_share: self.divider,
+            width_factors: self.widths,
+            photo: self.photo,
+            areas: visibility(self.areas),
+            boundaries: visibility(self.boundaries),
+            exaggeration: self.exaggeration,
+            screen_space_error_px: self.error_px,
+            cell_px: self.cell_px.unwrap_or(f64::INFINITY),
+            samples_per_side: self.samples,
+            is_wireframe: self.wireframe,
+            ..MapSettings::usual(roads)
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "settings_record_tests.rs"]
+mod tests;

@@ -1,0 +1,68 @@
+//! Settings of the page change what they name and nothing else.
+
+use corniche_styles::Style;
+use corniche_viewer::Wireframe;
+
+use super::*;
+
+#[test]
+fn what_is_not_named_stays_and_what_is_named_changes() {
+    let usual = SettingsRecord::default();
+    let changed = usual.changed_by(r#"{"roads": "sv", "cell_px": null, "photo": 0.5}"#).unwrap();
+    assert_eq!(
+        changed,
+        SettingsRecord {
+            roads: RoadMethod::ShadowVolumes,
+            cell_px: None,
+            photo: Some(0.5),
+            ..usual.clone()
+        }
+    );
+    assert_eq!(changed.of_session().roads.method, RoadMethod::ShadowVolumes);
+    assert_eq!(changed.of_session().wireframe(), Wireframe::Hidden);
+    let edges = usual.changed_by(r#"{"wireframe": true}"#).unwrap();
+    assert_eq!(edges.of_session().wireframe(), Wireframe::Shown);
+    let nothing = usual.changed_by(r#"{"roads": null, "divider": null}"#).unwrap();
+    assert_eq!(nothing, usual);
+    let text = serde_json::to_string(&changed).unwrap();
+    assert_eq!(usual.changed_by(&text).unwrap(), changed);
+    let both = usual
+        .changed_by(
+            r#"{"compare": "split", "classes": [true,false,true,true,true,true,true,true,true]}"#,
+        )
+        .unwrap();
+    let MapSettings { roads, compare, .. } = both.of_session();
+    let both = compare.pictures(roads);
+    let methods: Vec<RoadMethod> = both.iter().map(|roads| roads.method).collect();
+    assert_eq!(methods, [RoadMethod::Geometry, RoadMethod::ShadowVolumes]);
+    let hidden = FunctionalRoadClass::new(1).unwrap();
+    assert!(both.iter().all(|roads| !roads.classes.contains(hidden)));
+}
+
+#[test]
+fn what_cannot_be_is_told_in_words() {
+    for (changes, told) in [
+        ("7", "settings"),
+        (r#"{"road": "sv"}"#, "unknown field `road`"),
+        (r#"{"roads": "both"}"#, "unknown variant `both`"),
+        (r#"{"samples": 9}"#, "1 to 4"),
+        (r#"{"exaggeration": 0}"#, "0.01 to 100"),
+        (r#"{"widths": [1,1,1,1,1,1,1,1,-1]}"#, "0.01 to 100"),
+        (r#"{"divider": 2}"#, "0 to 1"),
+    ] {
+        let why = SettingsRecord::default().changed_by(changes).unwrap_err();
+        assert!(why.contains(told), "{changes}: {why}");
+    }
+}
+
+#[test]
+fn widths_and_layers_change_the_style() {
+    let look = |settings: &SettingsRecord| settings.of_session().applied_to(&Style::road_atlas());
+    let usual = look(&SettingsRecord::default());
+    let changed = SettingsRecord::default()
+        .changed_by(r#"{"widths": [2,1,1,1,1,1,1,1,1], "areas": false, "boundaries": false}"#)
+        .unwrap();
+    let style = look(&changed);
+    assert!((style.roads[0].width_m / usual.roads[0].width_m - 2.0).abs() < 1e-6);
+    assert!(!style.has_areas() && !style.has_boundaries() && usual.has_areas());
+}

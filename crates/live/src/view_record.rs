@@ -1,0 +1,87 @@
+//! Where a map looks, as JSON.
+
+use corniche_viewer::{CameraRequest, camera::Orientation};
+use serde::{Deserialize, Serialize};
+
+/// Where a map looks: at a place, from a distance in a direction, or straight from above with parallel rays.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ViewRecord {
+    /// Longitude, degrees.
+    pub lon: f64,
+    /// Latitude, degrees.
+    pub lat: f64,
+    /// True height of the place, metres; `None`: that of the ground.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height: Option<f64>,
+    /// True metres from the eye to the place; not from above.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distance: Option<f64>,
+    /// Clockwise from north, degrees.
+    #[serde(default)]
+    pub heading: f64,
+    /// 0 looks straight down, degrees.
+    #[serde(default)]
+    pub pitch: f64,
+    /// Whether rays are parallel.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub above: bool,
+    /// True metres in a pixel; only from above.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixel_m: Option<f64>,
+}
+
+/// The distance from which a place is looked at if nothing else is said, metres.
+const USUAL_DISTANCE_M: f64 = 5000.0;
+/// True metres in a pixel from above if nothing else is said.
+const USUAL_PIXEL_M: f64 = 5.0;
+
+impl ViewRecord {
+    /// The place of a request that is no overview.
+    #[must_use]
+    pub fn of(request: CameraRequest) -> Option<Self> {
+        match request {
+            CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } => {
+                Some(Self {
+                    lon: lon_deg,
+                    lat: lat_deg,
+                    height: height_m,
+                    distance: Some(distance_m),
+                    heading: orientation.heading_deg,
+                    pitch: orientation.pitch_deg,
+                    above: false,
+                    pixel_m: None,
+                })
+            }
+            CameraRequest::FromAbove { lon_deg, lat_deg, pixel_m, heading_deg } => Some(Self {
+                lon: lon_deg,
+                lat: lat_deg,
+                height: None,
+                distance: None,
+                heading: heading_deg,
+                pitch: 0.0,
+                above: true,
+                pixel_m: Some(pixel_m),
+            }),
+            _ => None,
+        }
+    }
+
+    /// The request that shows it.
+    #[must_use]
+    pub fn request(&self) -> CameraRequest {
+        let (lon_deg, lat_deg) = (self.lon, self.lat);
+        if self.above {
+            let pixel_m = self.pixel_m.unwrap_or(USUAL_PIXEL_M);
+            return CameraRequest::FromAbove {
+                lon_deg,
+                lat_deg,
+                pixel_m,
+                heading_deg: self.heading,
+            };
+        }
+        let orientation = Orientation { heading_deg: self.heading, pitch_deg: self.pitch };
+        let distance_m = self.distance.unwrap_or(USUAL_DISTANCE_M);
+        CameraRequest::LookAt { lon_deg, lat_deg, height_m: self.height, distance_m, orientation }
+    }
+}

@@ -1,0 +1,245 @@
+//! The panel's sections for how the map looks: methods and classes of roads, style, heights,
+//! layers, and what few people need.
+
+use std::ops::RangeInclusive;
+
+use corniche_live::{Compare, MapSettings, Refinement, Visibility, range};
+use corniche_roads::FunctionalRoadClass;
+use corniche_styles::Rgb;
+use corniche_viewer::{BoundaryLines, CapTest, Caps, Outline, Quads, RoadMethod, WidthGrowth};
+use egui::{
+    Color32, ComboBox, Grid, Label, Rect, Response, RichText, Slider, SliderClamping, Ui,
+    emath::Numeric, pos2, vec2,
+};
+
+use crate::window_content::WindowContent;
+
+/// The section for the method and the comparison of both methods.
+pub(crate) fn roads(ui: &mut Ui, settings: &mut MapSettings) {
+    ui.horizontal(|ui| {
+        ui.label("Compare");
+        let compare = &mut settings.compare;
+        ui.selectable_value(compare, Compare::Off, "off");
+        ui.selectable_value(compare, Compare::Split, "split")
+            .on_hover_text("GEO to the left of the divider, SV to the right; drag it");
+        ui.selectable_value(compare, Compare::Difference, "difference")
+            .on_hover_text("Where GEO and SV show different classes");
+    });
+    let roads = &mut settings.roads;
+    ui.add_enabled_ui(settings.compare == Compare::Off, |ui| {
+        ui.horizontal(|ui| {
+            ui.label("Method");
+            ui.selectable_value(&mut roads.method, RoadMethod::Geometry, "GEO")
+                .on_hover_text("Geometry lying on the ground");
+            ui.selectable_value(&mut roads.method, RoadMethod::ShadowVolumes, "SV")
+                .on_hover_text("Volumes cut with the ground");
+            ui.selectable_value(&mut roads.method, RoadMethod::None, "none");
+        });
+    });
+}
+
+/// The section for the classes that are shown, which is also the legend of the map: colours and names.
+pub(crate) fn classes(ui: &mut Ui, settings: &mut MapSettings, content: &WindowContent<'_>) {
+    Grid::new("classes").num_columns(2).min_col_width(0.0).show(ui, |ui| {
+        for (class, label) in FunctionalRoadClass::all().zip(content.class_labels) {
+            let color = content.road_colors.get(usize::from(class.number()));
+            let color = color32(color.copied().unwrap_or_default());
+            let (swatch, _) = ui.allocate_exact_size(vec2(18.0, 10.0), egui::Sense::hover());
+            ui.painter().rect_filled(swatch, 2, color);
+            let shown = &mut settings.roads.classes;
+            let mut is_shown = shown.contains(class);
+            ui.checkbox(&mut is_shown, label).on_hover_text(class.to_string());
+            *shown = if is_shown { shown.with(class) } else { shown.without(class) };
+            ui.end_row();
+        }
+    });
+}
+
+/// The section for style, heights, areas, lines of files and photos.
+pub(crate) fn map(ui: &mut Ui, settings: &mut MapSettings, content: &WindowContent<'_>) {
+    ui.horizontal(|ui| {
+        ui.label("Style");
+        let chosen = content.style_names.get(settings.style).map_or("", String::as_str);
+        ComboBox::from_id_salt("style").width(180.0).truncate().selected_text(chosen).show_ui(
+            ui,
+            |ui| {
+                for (place, name) in content.style_names.iter().enumerate() {
+                    ui.selectable_value(&mut settings.style, place, name);
+                }
+            },
+        );
+    });
+    slide(ui, &mut settings.exaggeration, range::EXAGGERATION, |slider| {
+        slider.prefix("× ").max_decimals(2).text("heights")
+    });
+    if content.has.areas {
+        let hover = "Water, forest … as the style draws them";
+        layer(ui, &mut settings.areas, "Areas", hover);
+    }
+    if content.has.boundaries {
+        layer(ui, &mut settings.boundaries, "Boundaries", "As the style draws them");
+        if settings.boundaries == Visibility::Shown {
+            boundaries(ui, &content.boundary_lines);
+        }
+    }
+    for (number, (name, color)) in content.overlays.iter().zip(&content.overlay_colors).enumerate()
+    {
+        ui.horizontal(|ui| {
+            let mut is_shown = !settings.hidden_overlays.contains(&number);
+            let mark = RichText::new("■").color(color32(*color));
+            if ui.checkbox(&mut is_shown, name).on_hover_text("The lines of this file").changed() {
+                if is_shown {
+                    settings.hidden_overlays.remove(&number);
+                } else {
+                    settings.hidden_overlays.insert(number);
+                }
+            }
+            ui.label(mark);
+        });
+    }
+    if let Some(of_style) = content.photo {
+        let mut strength = settings.photo.unwrap_or(of_style);
+        let slider = Slider::new(&mut strength, range::PHOTO).max_decimals(2).text("photo");
+        if ui.add(slider).on_hover_text("How strongly the photo is seen").changed() {
+            settings.photo = Some(strength);
+        }
+    }
+}
+
+/// A box to tick for a layer.
+fn layer(ui: &mut Ui, layer: &mut Visibility, name: &str, hover: &str) {
+    let mut is_shown = *layer == Visibility::Shown;
+    ui.checkbox(&mut is_shown, name).on_hover_text(hover);
+    *layer = if is_shown { Visibility::Shown } else { Visibility::Hidden };
+}
+
+/// The legend of boundaries: how they are drawn, and what they are called.
+fn boundaries(ui: &mut Ui, all: &[BoundaryLines]) {
+    for BoundaryLines { label, style } in all {
+        ui.horizontal(|ui| {
+            let (swatch, _) = ui.allocate_exact_size(vec2(36.0, 10.0), egui::Sense::hover());
+            for column in 0..swatch.width() as u16 {
+                let along = f32::from(column) + 0.5;
+                let width = style.width_px * style.dash.width_at(along);
+                let middle = pos2(swatch.left() + along, swatch.center().y);
+                let part = Rect::from_center_size(middle, vec2(1.0, width));
+                ui.painter().rect_filled(part, 0, color32(style.color));
+            }
+            ui.add(Label::new(label).wrap());
+        });
+    }
+}
+
+/// The section for what few people need: how roads are drawn in detail, widths by class, how finely the ground is drawn.
+pub(crate) fn advanced(ui: &mut Ui, settings: &mut MapSettings, content: &WindowContent<'_>) {
+    road_choices(ui, settings);
+    slide(ui, &mut settings.screen_space_error_px, range::SCREEN_SPACE_ERROR_PX, |slider| {
+        slider.suffix(" px").max_decimals(1).text("ground error")
+    })
+    .on_hover_text("A tile is refined while its error looks larger than this");
+    ui.horizontal(|ui| {
+        ui.label("Samples").on_hover_text("Per pixel; they are averaged");
+        for samples in range::SAMPLES_PER_SIDE {
+            let words = format!("{samples} × {samples}");
+            ui.selectable_value(&mut settings.samples_per_side, samples, words);
+        }
+    });
+    ui.checkbox(&mut settings.is_wireframe, "Wireframe");
+    let mut is_frozen = settings.refinement == Refinement::Frozen;
+    ui.checkbox(&mut is_frozen, "Freeze tiles")
+        .on_hover_text("Keep what is drawn now while the camera moves");
+    settings.refinement = if is_frozen { Refinement::Frozen } else { Refinement::Live };
+    ui.label("Widths of classes");
+    widths(ui, settings, content);
+}
+
+fn road_choices(ui: &mut Ui, settings: &mut MapSettings) {
+    let roads = &mut settings.roads;
+    Grid::new("roads").num_columns(2).show(ui, |ui| {
+        choice(ui, "Caps", &mut roads.caps, &[(Caps::Round, "round"), (Caps::None, "none")]);
+        choice(
+            ui,
+            "Cap test (SV)",
+            &mut roads.cap_test,
+            &[(CapTest::Distance, "distance"), (CapTest::PaperQuadratic, "paper's quadratic")],
+        );
+        choice(
+            ui,
+            "Quads (GEO)",
+            &mut roads.quads,
+            &[(Quads::Beds, "beds"), (Quads::Level, "level, the paper's")],
+        );
+        choice(
+            ui,
+            "Widths",
+            &mut roads.width_growth,
+            &[
+                (WidthGrowth::ByDistance, "grow with distance"),
+                (WidthGrowth::Constant, "times a constant"),
+                (WidthGrowth::None, "true"),
+            ],
+        );
+        choice(
+            ui,
+            "Outline",
+            &mut roads.outline,
+            &[
+                (Outline::OfStyle, "of the style"),
+                (Outline::None, "none"),
+                (Outline::Kernel3, "3 × 3"),
+                (Outline::Kernel5, "5 × 5"),
+            ],
+        );
+    });
+}
+
+fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, all: &[(T, &str)]) {
+    ui.label(name);
+    let chosen = all.iter().find(|(one, _)| one == value).map_or("", |(_, words)| words);
+    ComboBox::from_id_salt(name).width(150.0).selected_text(chosen).show_ui(ui, |ui| {
+        for (one, words) in all {
+            ui.selectable_value(value, *one, *words);
+        }
+    });
+    ui.end_row();
+}
+
+/// Factors on the style's widths.
+fn widths(ui: &mut Ui, settings: &mut MapSettings, content: &WindowContent<'_>) {
+    Grid::new("widths").num_columns(2).min_col_width(0.0).show(ui, |ui| {
+        let rows = FunctionalRoadClass::all().zip(&mut settings.width_factors);
+        for ((class, factor), label) in rows.zip(content.class_labels) {
+            ui.add_enabled_ui(settings.roads.classes.contains(class), |ui| {
+                slide(ui, factor, range::WIDTH_FACTOR, |slider| {
+                    slider.prefix("× ").max_decimals(2)
+                })
+                .on_hover_text(format!("Factor on the style's width of {class}: {label}"));
+            });
+            ui.add(egui::Label::new(label).truncate());
+            ui.end_row();
+        }
+    });
+}
+
+/// A logarithmic slider for a factor or a size. The command line may give a value that is out of the slider's range or has
+/// more digits than it shows; such a value stays as it is until the slider is moved.
+fn slide<T: Numeric>(
+    ui: &mut Ui,
+    value: &mut T,
+    range: RangeInclusive<T>,
+    dressed: impl FnOnce(Slider<'_>) -> Slider<'_>,
+) -> Response {
+    let mut moved = *value;
+    let slider = Slider::new(&mut moved, range).logarithmic(true).clamping(SliderClamping::Edits);
+    let response = ui.add(dressed(slider));
+    if response.changed() {
+        *value = moved;
+    }
+    response
+}
+
+/// A colour of a style, as the toolkit has colours.
+fn color32(color: Rgb) -> Color32 {
+    let [red, green, blue] = color.map(|part| (part * 255.0).round() as u8);
+    Color32::from_rgb(red, green, blue)
+}
