@@ -5,7 +5,7 @@ pub(crate) mod horizontal;
 pub(crate) mod vertical;
 pub(crate) mod wkt;
 
-pub(crate) mod compound;
+pub(crate) mod crs_text;
 
 pub(crate) mod operation;
 pub(crate) mod proj_operations;

@@ -22,7 +22,7 @@ mod files;
 mod polygon;
 mod polygon_image;
 
-pub use crs::compound::crs_from_text;
+pub use crs::crs_text::crs_from_text;
 pub use crs::datum_operation::{BetterOperation, DatumOperation};
 pub use crs::file_datums::{FileDatums, ToWgs84, by_system};
 pub use crs::height_operation::HeightOperation;

@@ -34,14 +34,14 @@ mod picked_road;
 #[doc(hidden)]
 pub mod polled_loader;
 mod session;
-mod session_record;
+mod session_json;
 mod settings;
-mod settings_record;
+mod settings_json;
 mod shown_view;
 mod style_list;
 mod tiles;
 mod trace;
-mod view_record;
+mod view_json;
 mod views;
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -60,13 +60,13 @@ pub use {
     notices::{NotSaved, Notice, Notices},
     picked_road::{PickPlace, PickedRoad},
     session::{Session, SessionStart, SessionStep},
-    session_record::FrameRest,
+    session_json::FrameRest,
     settings::{Compare, MapSettings, Refinement, Visibility, range},
-    settings_record::{SettingChanges, SettingsRecord},
+    settings_json::{SettingChanges, SettingsRecord},
     shown_view::{CommandOf, ShownView},
     style_list::{NamedStyle, Reload, StyleList},
     tiles::{Loaded, ShownGround, TileLoader, Tiles},
     trace::{Trace, TraceLine},
-    view_record::ViewRecord,
+    view_json::ViewRecord,
     views::{MAX_PITCH_DEG, first_view},
 };

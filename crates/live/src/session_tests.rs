@@ -7,7 +7,7 @@ use super::*;
 use crate::{
     map_canvas::Counts,
     polled_loader::{PolledLoader, late_package},
-    session_record::FrameRest,
+    session_json::FrameRest,
     style_list::NamedStyle,
     views::first_view,
 };

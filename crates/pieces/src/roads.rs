@@ -9,7 +9,7 @@ pub mod near_spans;
 pub mod overlap;
 pub mod pieces;
 
-pub mod shares;
+pub mod proportions;
 pub mod split;
 pub mod totals;
 mod varints;

@@ -9,12 +9,12 @@ mod build_plan;
 mod coordinates;
 mod covered_tiles;
 mod differences;
+mod enough_room;
 mod error;
 mod estimate;
 mod facts;
-mod opened;
+mod opened_inputs;
 pub mod rates;
-mod room;
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ pub use build_plan::{BuildPlan, FrcTableRecord, PlannedGrid, PlannedLevel};
 pub use error::{PLAN_VERSION, PlanError, PlanFileError};
 pub use estimate::{Estimate, MemoryEstimate, Rates};
 pub use facts::network_differences;
-pub use opened::Opened;
+pub use opened_inputs::Opened;
 
 /// Plans a build and estimates what it will take. Of many data some tiles are read for it.
 ///
@@ -54,5 +54,5 @@ pub fn check_room(
     observer: &dyn Observer,
 ) -> Result<(), PlanError> {
     let estimate = Estimate::of(opened, resources, observer)?;
-    room::Room::of(resources.memory_bytes, folders, held_bytes)?.check(&estimate)
+    enough_room::Room::of(resources.memory_bytes, folders, held_bytes)?.check(&estimate)
 }

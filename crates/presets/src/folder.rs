@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{InputFiles, areas::area_preset, config::Config, frc::frc_preset, photo::is_photo_off};
+use crate::{
+    InputFiles, areas::area_preset, build_options::Config, frc::frc_preset, photo::is_photo_off,
+};
 
 impl Config {
     /// The same settings, with paths that begin at `folder`, which the settings file is in, instead of the working folder. Absolute

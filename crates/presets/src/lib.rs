@@ -5,10 +5,10 @@
 
 mod areas;
 mod bounds;
+mod build_options;
 mod class_cells;
 mod class_labels;
 mod classes;
-mod config;
 mod error;
 mod files;
 mod folder;
@@ -18,12 +18,12 @@ mod values;
 
 pub use areas::{area_preset, area_preset_names, parse_area_table};
 pub use bounds::BoundsChoice;
+pub use build_options::{
+    AreaOptions, Config, InputFiles, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions,
+};
 pub use class_cells::class_filter;
 pub use class_labels::class_labels;
 pub use classes::Classes;
-pub use config::{
-    AreaOptions, Config, InputFiles, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions,
-};
 pub use error::PresetError;
 pub use files::OutputFiles;
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};

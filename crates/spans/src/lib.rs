@@ -18,12 +18,12 @@ mod connected;
 mod contacts;
 mod crossing_place;
 mod crossings;
-mod decks;
 mod harmonic;
 mod lifts;
 mod refusals;
 mod span_finder;
 mod spans;
+mod structure_heights;
 #[cfg(test)]
 mod test_network;
 mod vicinity;
@@ -31,8 +31,8 @@ mod vicinity;
 pub use connected::{SpanLine, connected};
 pub use crossing_place::CrossingPlace;
 pub use crossings::{Crossing, Crossings, Order, crossings};
-pub use decks::{Decks, FreeHeight};
 pub use spans::{Joint, SpanChain, SpanKind, SpanProblem, SpanReason, Spans, Support};
+pub use structure_heights::{Decks, FreeHeight};
 pub use vicinity::Vicinity;
 
 /// The true distance between two places of the lattice in plan, metres.

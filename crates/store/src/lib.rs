@@ -35,8 +35,8 @@ mod error;
 mod files;
 mod groups;
 mod ids;
+mod in_memory_store;
 mod local;
-mod memory;
 mod parts_place;
 mod scratch;
 mod sorter;
@@ -50,11 +50,11 @@ pub use error::StoreError;
 pub use files::Traffic;
 pub use groups::Groups;
 pub use ids::random_digits;
+pub use in_memory_store::{MemoryScratch, MemoryStore};
 pub use local::{
     FORMAT_VERSION, Folder, LocalScratch, LocalStore, OwnPart, PARTS_NAME, PLAN_NAME, STORE_NAME,
     SYNC_INTERVAL, SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,
 };
-pub use memory::{MemoryScratch, MemoryStore};
 pub use parts_place::{PartFile, PartsPlace, Publish};
 pub use scratch::{Scratch, Span};
 pub use sorter::{SortRecord, Sorted, Sorter};

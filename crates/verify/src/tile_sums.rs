@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::{LatticeBounds, LatticePoint, TileId};
-use corniche_pieces::roads::shares::share;
+use corniche_pieces::roads::proportions::share;
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{Distribution, FilePackage, GrowthRow, PayloadSizes, TilePayload};
 

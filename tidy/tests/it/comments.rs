@@ -20,7 +20,7 @@ const SINGLE: [&str; 11] = [
 const TOLD_TO_USERS: [&str; 5] = [
     "crates/cli/src/args",
     "crates/cli/src/documents",
-    "crates/presets/src/config.rs",
+    "crates/presets/src/build_options.rs",
     "crates/presets/src/files.rs",
     "crates/settings/src/table.rs",
 ];

@@ -6,10 +6,12 @@ use std::{
     path::PathBuf,
 };
 
-use corniche_tidy::{crates_of, files_below, root};
+use corniche_tidy::{crates_of, figures, files_below, root};
 
 /// Lines beyond which a file is split.
 const MAX_FILE_LINES: usize = 600;
+/// Product lines below which a crate says why it is one.
+const SMALL_CRATE_LINES: usize = 1000;
 /// Words that a file's first line has at least.
 const LEAST_WORDS: usize = 4;
 
@@ -128,4 +130,16 @@ fn an_image_is_built_from_the_archive() {
     let passing = list.lines().filter(|line| line.starts_with('!')).map(str::to_owned).collect();
     assert_eq!(wanted, passing);
     assert!(!wanted.is_empty());
+}
+
+/// A small crate says in its manifest why it stands alone.
+#[test]
+fn small_crates_say_why_they_stand_alone() {
+    for folder in crates_of(&root()).unwrap() {
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        let says = manifest.lines().any(|line| line.starts_with("# Stands alone: "));
+        let lines = figures(&folder).unwrap().product_lines;
+        let is_small = lines < SMALL_CRATE_LINES;
+        assert_eq!(is_small, says, "{}: {lines} product lines", folder.display());
+    }
 }

@@ -22,7 +22,7 @@ impl RecordedCrs {
     /// # Errors
     /// When PROJ cannot read it, or it is neither projected nor geographic.
     pub fn new(text: &str, metres_per_unit: [f64; 2], data: Bounds) -> Result<Self, CrsError> {
-        let crs = compound::crs_from_text("the package's", text)?.0;
+        let crs = crs_text::crs_from_text("the package's", text)?.0;
         let is_unit = |factor: f64| factor.abs().to_bits() == crs.unit_m.to_bits();
         let is_scaled = !(crs.is_projected() && metres_per_unit.into_iter().all(is_unit));
         let working = GridCrs { crs, metres_per_unit, middle: 0.0, is_scaled }.around(data);
@@ -63,7 +63,7 @@ impl RecordedCrs {
     /// When PROJ does not know it, it is not projected, or PROJ knows no operation.
     pub fn projected(&self, text: &str, wgs84_bounds: Bounds) -> Result<ProjectedCrs, CrsError> {
         library_error::quiet();
-        let (crs, _) = compound::crs_from_text("--crs", text)?;
+        let (crs, _) = crs_text::crs_from_text("--crs", text)?;
         if !crs.is_projected() {
             return Err(CrsError::NotProjected { text: text.to_owned() });
         }

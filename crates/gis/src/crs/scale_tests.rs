@@ -1,11 +1,11 @@
 //! The scales of UTM and Web Mercator are those of their formulas.
 
 use super::*;
-use crate::crs::compound;
+use crate::crs::crs_text;
 use crate::crs::horizontal::Crs;
 
 fn scale_at(crs: &str, point_m: [f64; 2]) -> LocalScale {
-    let crs = compound::crs_from_text("--crs", crs).unwrap().0;
+    let crs = crs_text::crs_from_text("--crs", crs).unwrap().0;
     let operation = CrsOperation::new(&crs, &Crs::wgs84().unwrap(), None);
     scales(&operation, &[point_m]).unwrap()[0].unwrap()
 }

@@ -7,7 +7,7 @@ use gdal::Dataset;
 use gdal::spatial_ref::SpatialRef;
 
 use crate::RasterError;
-use crate::crs::compound::{self, CrsParts};
+use crate::crs::crs_text::{self, CrsParts};
 use crate::crs::horizontal::Crs;
 use crate::crs::vertical::VerticalCrs;
 
@@ -131,10 +131,10 @@ fn crs_of(
 ) -> Result<CrsParts, RasterError> {
     let own = || path.to_path_buf();
     let named = reference.filter(|reference| !reference.is_local());
-    let horizontal = named.as_ref().map(compound::parts_of).transpose()?.flatten();
+    let horizontal = named.as_ref().map(crs_text::parts_of).transpose()?.flatten();
     match (horizontal, crs_text, named) {
         (Some(found), _, _) => Ok(found),
-        (None, Some(text), _) => Ok(compound::crs_from_text("--dem-crs", text)?),
+        (None, Some(text), _) => Ok(crs_text::crs_from_text("--dem-crs", text)?),
         (None, None, Some(unusable)) => {
             Err(RasterError::UnusableCrs { path: own(), name: unusable.name().unwrap_or_default() })
         }

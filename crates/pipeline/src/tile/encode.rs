@@ -14,7 +14,7 @@ use corniche_pieces::{
         ground_lines,
         lay::{ClassSums, Laid, TileToLayOn, lost_pieces},
         pieces::TilePieces,
-        shares::share,
+        proportions::share,
     },
 };
 use corniche_roads::FunctionalRoadClass;

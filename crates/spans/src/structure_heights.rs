@@ -387,5 +387,5 @@ fn solved(spans: &Spans, held_m: &[f64]) -> Vec<f64> {
 }
 
 #[cfg(test)]
-#[path = "decks_tests.rs"]
+#[path = "structure_heights_tests.rs"]
 mod tests;

@@ -187,5 +187,5 @@ impl SettingsRecord {
 }
 
 #[cfg(test)]
-#[path = "settings_record_tests.rs"]
+#[path = "settings_json_tests.rs"]
 mod tests;

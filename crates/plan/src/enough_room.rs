@@ -138,5 +138,5 @@ fn size(bytes: u64) -> String {
 }
 
 #[cfg(test)]
-#[path = "room_tests.rs"]
+#[path = "enough_room_tests.rs"]
 mod tests;

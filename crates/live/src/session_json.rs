@@ -10,7 +10,7 @@ use corniche_viewer::{
 };
 use serde_json::{Value, json};
 
-use crate::{controls::Mode, map_canvas::Counts, session::Session, view_record::ViewRecord};
+use crate::{controls::Mode, map_canvas::Counts, session::Session, view_json::ViewRecord};
 
 /// What a frame has left to do beside what the session knows of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

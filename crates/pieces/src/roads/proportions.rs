@@ -16,5 +16,5 @@ pub fn share(total: u64, parts: &[u64; FunctionalRoadClass::COUNT], index: usize
 }
 
 #[cfg(test)]
-#[path = "shares_tests.rs"]
+#[path = "proportions_tests.rs"]
 mod tests;

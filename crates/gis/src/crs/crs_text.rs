@@ -63,5 +63,5 @@ fn is_horizontal(wkt: &str) -> bool {
 }
 
 #[cfg(test)]
-#[path = "compound_tests.rs"]
+#[path = "crs_text_tests.rs"]
 mod tests;

@@ -166,5 +166,5 @@ fn yes_or_no<'de, D: Deserializer<'de>>(
 }
 
 #[cfg(test)]
-#[path = "config_tests.rs"]
+#[path = "build_options_tests.rs"]
 mod tests;
