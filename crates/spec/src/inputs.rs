@@ -8,6 +8,7 @@
 //!   stamp ─► open ─► hash ─► roads, heights … ─► stamp again ─► package
 //! ```
 
+mod error;
 mod planned_input;
 mod servers;
 mod stamp;
@@ -18,13 +19,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_dem::DemError;
 use corniche_gis::{VirtualFile, raster_files};
 use corniche_tileset::{InputKind, InputRecord};
 use corniche_work::Stage;
 use sha2::{Digest, Sha256};
 
 pub use self::{
+    error::InputError,
     planned_input::PlannedInput,
     servers::{elevation_names, extract_names, input_name, photo_names},
 };
@@ -57,50 +58,6 @@ enum Content {
     Virtual(PathBuf),
     /// A folder, which has no bytes of its own; its files are parts.
     Folder,
-}
-
-/// Why inputs cannot be used.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
-#[non_exhaustive]
-pub enum InputError {
-    #[error("cannot read {path:?}")]
-    Read { path: PathBuf, source: io::Error },
-    #[error(
-        "the name of {path:?} is not UTF-8, and a package records the names of its inputs as text; rename the file"
-    )]
-    Name { path: PathBuf },
-    #[error(
-        "{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first"
-    )]
-    Stream { path: PathBuf },
-    #[error(transparent)]
-    Dem(#[from] DemError),
-    #[error(transparent)]
-    Address(#[from] corniche_objects::ObjectError),
-    #[error("the run could not be set up: {what}")]
-    Setting { what: String },
-    #[error(
-        "{path:?} changed while it was read, so the package could mix old and new content; nothing was written; run the \
-         same command again when no program writes to the file"
-    )]
-    Changed { path: PathBuf },
-    #[error("interrupted; no package was written")]
-    Interrupted,
-}
-
-corniche_dem::from_dem_errors!(InputError);
-
-impl InputError {
-    /// Whether the cause is an input or a setting, rather than a failure while the run went on.
-    #[must_use]
-    pub fn is_unusable_input(&self) -> bool {
-        match self {
-            Self::Address(error) => error.is_unusable(),
-            Self::Setting { .. } | Self::Changed { .. } | Self::Interrupted => false,
-            _ => true,
-        }
-    }
 }
 
 fn setting(what: String) -> InputError {

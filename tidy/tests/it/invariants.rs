@@ -38,14 +38,13 @@ const UNSAFE: [(&str, &str); 2] = [
 ];
 
 /// Crates that open files.
-const FILES: [(&str, &str); 12] = [
+const FILES: [(&str, &str); 11] = [
     ("cli", "settings, styles, lists, pages and everything that commands write"),
     ("export", "the files that it makes, and scratch space"),
     ("gis", "rasters, polygons, vector files, lists of files"),
     ("objects", "the file that is sent, and the note of an upload that was begun"),
     ("osm", "extracts"),
     ("overlay", "the file of lines that a person draws"),
-    ("pipeline", "the package while it is written"),
     ("spec", "hashes of inputs, what the system says of its memory"),
     ("store", "the store's own files, and what is written beside targets"),
     ("tileset", "packages"),

@@ -1,4 +1,4 @@
-//! `corniche plan --json`.
+//! The JSON document of `corniche plan`.
 
 use corniche_plan::Estimate;
 use serde::Serialize;

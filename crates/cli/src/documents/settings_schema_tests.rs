@@ -14,7 +14,7 @@ type PhotoRecord = PhotoDocument;
 /// The polygon that the package was cut with.
 #[derive(schemars::JsonSchema)]
 #[expect(dead_code, reason = "only its schema is wanted")]
-pub(super) struct PolygonDocument {
+pub(crate) struct PolygonDocument {
     /// File name without folders.
     name: String,
     /// SHA-256 of its coordinate system and corners, whatever the format of the file.
@@ -24,7 +24,7 @@ pub(super) struct PolygonDocument {
 /// The table of classes of areas.
 #[derive(schemars::JsonSchema)]
 #[expect(dead_code, reason = "only its schema is wanted")]
-pub(super) struct AreaTableDocument {
+pub(crate) struct AreaTableDocument {
     /// Its name.
     table: String,
     /// SHA-256 of its text.
@@ -34,7 +34,7 @@ pub(super) struct AreaTableDocument {
 /// How the photos of a package were made.
 #[derive(schemars::JsonSchema)]
 #[expect(dead_code, reason = "only its schema is wanted")]
-pub(super) struct PhotoDocument {
+pub(crate) struct PhotoDocument {
     /// A cell of the finest level has 2^levels texels along each side.
     levels: u8,
     /// JPEG's quality, from 1 to 100.
@@ -52,7 +52,7 @@ macro_rules! schema {
         #[derive(schemars::JsonSchema)]
         #[schemars(transform = with_keys_in_order)]
         #[expect(dead_code, reason = "only its schema is wanted")]
-        pub(super) struct SettingsDocument {
+        pub(crate) struct SettingsDocument {
             $($(#[$($attr)*])* $(#[serde(skip_serializing_if = $left_out)])? $key: $type,)*
         }
     };

@@ -61,15 +61,15 @@ fn has(border: &Cells, cell: i64) -> bool {
 /// The border cells of a tile and of its four neighbours; without any ground where a tile has none.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct CellsAround {
-    /// Those of the tile itself.
+    /// Border cells of the tile itself.
     pub own: BorderCells,
-    /// Those of its northern neighbour.
+    /// Border cells of its northern neighbour.
     pub north: BorderCells,
-    /// Those of its eastern neighbour.
+    /// Border cells of its eastern neighbour.
     pub east: BorderCells,
-    /// Those of its southern neighbour.
+    /// Border cells of its southern neighbour.
     pub south: BorderCells,
-    /// Those of its western neighbour.
+    /// Border cells of its western neighbour.
     pub west: BorderCells,
 }
 

@@ -71,7 +71,7 @@ pub struct ExtractCounts {
 pub struct LeftOutCount {
     /// Why they were left out.
     pub reason: String,
-    /// Their value of `highway`.
+    /// The value of `highway` of these ways.
     pub highway: String,
     /// How many ways.
     pub ways: u64,

@@ -10,7 +10,7 @@ use corniche_gis::{
 };
 use corniche_objects::{ObjectAddress, StorageSettings};
 
-use super::InputError;
+use super::error::InputError;
 
 /// The name by which GDAL knows an input: `s3://BUCKET/NAME` is `/vsis3/BUCKET/NAME`, `https://…` is `/vsicurl/https://…`. Other names stay as they are.
 ///
