@@ -99,7 +99,7 @@ impl From<BuildError> for Failure {
     fn from(error: BuildError) -> Self {
         let code = match &error {
             BuildError::Exists { .. } => ExitCode::Exists,
-            interrupted if interrupted.is_interruption() => ExitCode::Interrupted,
+            BuildError::Interrupted => ExitCode::Interrupted,
             other if other.is_unusable_input() => ExitCode::Unusable,
             _ => ExitCode::Failed,
         };
@@ -133,6 +133,7 @@ impl From<VerifyError> for Failure {
             VerifyError::Changed { .. } | VerifyError::Work(_) => ExitCode::Failed,
             VerifyError::Extract(error) if !error.is_unusable_input() => ExitCode::Failed,
             VerifyError::Ground(error) if !error.is_unusable_input() => ExitCode::Failed,
+            VerifyError::Kept(error) if !error.is_unusable_input() => ExitCode::Failed,
             VerifyError::Setup(error) if !error.is_unusable_input() => ExitCode::Failed,
             _ => ExitCode::Unusable,
         };

@@ -9,7 +9,6 @@ use corniche_work::Interrupted;
 /// Why heights or photos could not be read or kept.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
-#[non_exhaustive]
 pub enum GroundError {
     #[error(transparent)]
     Dem(#[from] corniche_dem::DemError),

@@ -126,9 +126,12 @@ impl SettingsRecord {
     /// In words, when there is no such setting or a value is out of its range.
     pub fn changed(&self, mut changes: SettingChanges) -> Result<Self, String> {
         let told = |error: serde_json::Error| format!("settings: {error}");
-        changes.retain(|name, value| !value.is_null() || WITH_NULL.contains(&name.as_str()));
         let mut all = serde_json::to_value(self).map_err(told)?;
         if let Value::Object(all) = &mut all {
+            // A name that no setting has stays, and is refused with its value or without.
+            changes.retain(|name, value| {
+                !value.is_null() || WITH_NULL.contains(&name.as_str()) || !all.contains_key(name)
+            });
             all.extend(changes);
         }
         let changed: Self = serde_json::from_value(all).map_err(told)?;

@@ -27,17 +27,17 @@ pub enum BuildError {
     )]
     TargetIsInput { path: PathBuf },
     #[error(transparent)]
-    Input(#[from] InputError),
+    Input(InputError),
     #[error(transparent)]
-    Plan(#[from] PlanError),
+    Plan(PlanError),
     #[error(transparent)]
     PlanFile(#[from] PlanFileError),
     #[error(transparent)]
     Dem(#[from] corniche_dem::DemError),
     #[error(transparent)]
-    Ground(#[from] GroundError),
+    Photo(#[from] corniche_photo::PhotoError),
     #[error(transparent)]
-    Extract(#[from] ExtractError),
+    Extract(ExtractError),
     #[error(transparent)]
     Artifact(#[from] ArtifactError),
     #[error("no node of {} has a height: every node is void, or outside --polygon", listed_files(.dem))]
@@ -123,27 +123,66 @@ impl From<OpenError> for BuildError {
     }
 }
 
-impl BuildError {
-    /// Whether the run was interrupted, in whatever it did.
-    #[must_use]
-    pub fn is_interruption(&self) -> bool {
-        matches!(
-            self,
-            Self::Interrupted
-                | Self::Input(InputError::Interrupted)
-                | Self::Plan(PlanError::Interrupted)
-                | Self::Ground(GroundError::Interrupted)
-                | Self::Extract(ExtractError::Interrupted)
-        )
-    }
+// What more than one of these can fail with is one variant here, so that no cause has two shapes.
 
+impl From<InputError> for BuildError {
+    fn from(error: InputError) -> Self {
+        match error {
+            InputError::Dem(error) => Self::Dem(error),
+            InputError::Address(error) => Self::Objects(error),
+            InputError::Interrupted => Self::Interrupted,
+            other => Self::Input(other),
+        }
+    }
+}
+
+impl From<GroundError> for BuildError {
+    fn from(error: GroundError) -> Self {
+        match error {
+            GroundError::Dem(error) => Self::Dem(error),
+            GroundError::Photo(error) => Self::Photo(error),
+            GroundError::Terrain(error) => Self::Terrain(error),
+            GroundError::Artifact(error) => Self::Artifact(error),
+            GroundError::Encode(error) => Self::Encode(error),
+            GroundError::Interrupted => Self::Interrupted,
+        }
+    }
+}
+
+impl From<PlanError> for BuildError {
+    fn from(error: PlanError) -> Self {
+        match error {
+            PlanError::Input(error) => error.into(),
+            PlanError::Dem(error) => Self::Dem(error),
+            PlanError::Ground(error) => error.into(),
+            PlanError::Terrain(error) => Self::Terrain(error),
+            PlanError::Triangulate { id, source } => Self::Triangulate { id, source },
+            PlanError::Interrupted => Self::Interrupted,
+            other => Self::Plan(other),
+        }
+    }
+}
+
+impl From<ExtractError> for BuildError {
+    fn from(error: ExtractError) -> Self {
+        match error {
+            ExtractError::Dem(error) => Self::Dem(error),
+            ExtractError::Artifact(error) => Self::Artifact(error),
+            ExtractError::Triangulate { id, source } => Self::Triangulate { id, source },
+            ExtractError::Encode(error) => Self::Encode(error),
+            ExtractError::Interrupted => Self::Interrupted,
+            other => Self::Extract(other),
+        }
+    }
+}
+
+impl BuildError {
     /// Whether the cause is an unusable input or setting, rather than a failure while the build ran.
     #[must_use]
     pub fn is_unusable_input(&self) -> bool {
         match self {
             Self::Input(error) => error.is_unusable_input(),
             Self::Plan(error) => error.is_unusable_input(),
-            Self::Ground(error) => error.is_unusable_input(),
             Self::Extract(error) => error.is_unusable_input(),
             Self::Artifact(error) => error.is_unusable_input(),
             Self::Objects(error) => error.is_unusable(),
@@ -152,6 +191,7 @@ impl BuildError {
             | Self::NoTarget(_)
             | Self::TargetIsInput { .. }
             | Self::Dem(_)
+            | Self::Photo(_)
             | Self::NoHeights { .. }
             | Self::NoCell { .. }
             | Self::NoGround { .. }
@@ -165,3 +205,7 @@ impl BuildError {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "error_tests.rs"]
+mod tests;

@@ -3,7 +3,7 @@
 //! ```text
 //!                    ┌─► presets: options of the command line and of settings files, merged and checked
 //!   settings! ───────┼─► SettingsRecord: the manifest's keys, facts for comparisons, limits for what is read
-//!   (the table)      ├─► placed!: options ─► checked settings (cli) ⇄ record (pipeline)
+//!   (the table)      ├─► placed!: options ─► checked settings (cli) ⇄ record (spec)
 //!                    └─► the schema of `corniche info --json` (tests of cli)
 //! ```
 //!

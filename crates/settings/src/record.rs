@@ -100,16 +100,18 @@ macro_rules! record {
             /// Writes the settings with all keys in their order, but for those that are left out
             /// where they have their default. The keys in `always` are there in any case.
             fn write<S: Serializer>(&self, to: S, always: &[&str]) -> Result<S::Ok, S::Error> {
-                let keys = Self::keys();
+                let mut keys = Self::keys();
+                keys.retain(|key| match *key {
+                    $(stringify!($key) => {
+                        let is_left_out = [$($left_out)?].contains(&"is_default");
+                        !is_left_out || always.contains(key) || !is_default(&self.$key)
+                    })*
+                    _ => false,
+                });
                 let mut state = to.serialize_struct("SettingsRecord", keys.len())?;
                 for key in keys {
                     match key {
-                        $(stringify!($key) => {
-                            let is_left_out = [$($left_out)?].contains(&"is_default");
-                            if !is_left_out || always.contains(&key) || !is_default(&self.$key) {
-                                state.serialize_field(stringify!($key), &self.$key)?;
-                            }
-                        })*
+                        $(stringify!($key) => state.serialize_field(stringify!($key), &self.$key)?,)*
                         _ => {}
                     }
                 }

@@ -21,7 +21,7 @@
 /// key: Type                       in the manifest
 ///     , left_out "is_default"     new keys are left out at their default, so that hashes hold
 ///     , within LOW..=HIGH         numbers that may be read
-///     , at path.of.field          in the checked settings of `pipeline`
+///     , at path.of.field          in the checked settings of `spec`
 ///     , usual VALUE               the default there, if it is not that of the type
 /// ```
 ///

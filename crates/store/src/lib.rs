@@ -37,12 +37,12 @@ mod groups;
 mod ids;
 mod in_memory_store;
 mod local;
+mod output_target;
 mod parts_place;
 mod scratch;
 mod sorter;
 mod stored_plan;
 mod system_disk;
-mod target;
 
 pub use artifacts::{Artifacts, Key};
 pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
@@ -55,12 +55,12 @@ pub use local::{
     FORMAT_VERSION, Folder, LocalScratch, LocalStore, OwnPart, PARTS_NAME, PLAN_NAME, STORE_NAME,
     SYNC_INTERVAL, SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,
 };
+pub use output_target::{
+    Claim, Existing, LackOfRoom, TargetError, UnfinishedFile, UnfinishedFolder, file_target,
+    folder_of, is_same_file, make_own_folder, open_own, sync_folder, sync_tree,
+};
 pub use parts_place::{PartFile, PartsPlace, Publish};
 pub use scratch::{Scratch, Span};
 pub use sorter::{SortRecord, Sorted, Sorter};
 pub use stored_plan::{PlanHash, StoredPlan};
 pub use system_disk::SystemDisk;
-pub use target::{
-    Claim, Existing, LackOfRoom, TargetError, UnfinishedFile, UnfinishedFolder, file_target,
-    folder_of, is_same_file, make_own_folder, open_own, sync_folder, sync_tree,
-};

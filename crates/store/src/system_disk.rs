@@ -7,7 +7,7 @@ use std::{
 };
 
 #[cfg(unix)]
-use crate::target::own_files::system::OwnFolder;
+use crate::output_target::own_files::system::OwnFolder;
 use crate::{Disk, DiskFile, FileId, Hold, Listed, OpenMode, sync_folder};
 
 /// The file system of the machine.

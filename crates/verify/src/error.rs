@@ -82,8 +82,10 @@ pub enum VerifyError {
     OtherTableOfThatName { name: String },
     #[error("the extract could not be laid on the package's tiles")]
     Extract(#[source] ExtractError),
-    #[error("the elevation data could not be read again")]
+    #[error("the ground of the package could not be compared")]
     Ground(#[source] GroundError),
+    #[error("intermediate results could not be kept in the folder for temporary files")]
+    Kept(#[source] ArtifactError),
     #[error(transparent)]
     Setup(InputError),
     #[error("cannot read {path:?}")]
@@ -111,6 +113,7 @@ impl From<GroundError> for VerifyError {
             GroundError::Interrupted => Self::Interrupted,
             GroundError::Dem(error) => Self::Dem(error),
             GroundError::Photo(error) => Self::Photo(error),
+            GroundError::Artifact(error) => Self::Kept(error),
             other => Self::Ground(other),
         }
     }
@@ -122,6 +125,7 @@ impl From<ExtractError> for VerifyError {
             ExtractError::Interrupted => Self::Interrupted,
             ExtractError::Dem(error) => Self::Dem(error),
             ExtractError::Storage(source) => Self::Work(source),
+            ExtractError::Artifact(error) => Self::Kept(error),
             other => Self::Extract(other),
         }
     }
@@ -129,13 +133,13 @@ impl From<ExtractError> for VerifyError {
 
 impl From<ArtifactError> for VerifyError {
     fn from(error: ArtifactError) -> Self {
-        ExtractError::from(error).into()
+        Self::Kept(error)
     }
 }
 
 impl From<StoreError> for VerifyError {
     fn from(error: StoreError) -> Self {
-        ExtractError::from(error).into()
+        Self::Kept(error.into())
     }
 }
 

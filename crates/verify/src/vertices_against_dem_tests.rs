@@ -1,6 +1,7 @@
 //! Gradients beside gaps are one-sided, and only refused samples are findings.
 
 use corniche_dem::AuditError;
+use corniche_pieces::ExtractError;
 use corniche_spec::artifacts::ArtifactError;
 
 use super::*;
@@ -32,5 +33,7 @@ fn only_what_the_audit_refuses_is_a_finding() {
     assert!(matches!(interrupted, Err(VerifyError::Interrupted)));
     let damaged = ArtifactError::Damaged { what: "heights".to_owned() };
     let failed = refusal(Err(damaged.into()));
-    assert!(matches!(failed, Err(VerifyError::Ground(_))));
+    assert!(matches!(failed, Err(VerifyError::Kept(_))));
+    let full = ExtractError::Storage(std::io::ErrorKind::StorageFull.into());
+    assert!(matches!(full.into(), VerifyError::Work(_)));
 }

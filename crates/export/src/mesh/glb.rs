@@ -75,6 +75,8 @@ impl GlbWriter {
         mut accessor: Value,
         target: u32,
     ) -> io::Result<usize> {
+        // glTF is little-endian, as is every machine that this is compiled for.
+        const { assert!(cfg!(target_endian = "little")) };
         let bytes: &[u8] = bytemuck::cast_slice(items);
         self.views.push(json!({
             "buffer": 0, "byteOffset": self.bytes.length(), "byteLength": bytes.len(), "target": target,

@@ -6,7 +6,7 @@ use corniche_geom::{Bounds, ProjectError, Projection, Seam};
 use crate::crs::datum_operation::DatumOperation;
 use crate::crs::horizontal::{Crs, GridCrs};
 use crate::crs::operation::CrsOperation;
-use crate::crs::{compound, scale};
+use crate::crs::{crs_text, scale};
 use crate::{CrsError, library_error};
 
 /// The working CRS of a package, from what the package records of it: without the elevation files.

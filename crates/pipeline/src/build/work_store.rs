@@ -172,10 +172,7 @@ fn is_final(error: &BuildError) -> bool {
             BuildError::NoHeights { .. }
                 | BuildError::NoCell { .. }
                 | BuildError::Extract(
-                    ExtractError::NoRoads { .. }
-                        | ExtractError::NoOverlap { .. }
-                        | ExtractError::Triangulate { .. }
-                        | ExtractError::Encode(_)
+                    ExtractError::NoRoads { .. } | ExtractError::NoOverlap { .. }
                 )
                 | BuildError::NoGround { .. }
                 | BuildError::Terrain(TerrainError::Damaged { .. } | TerrainError::Tile { .. })

@@ -76,7 +76,9 @@ impl App {
         let unused_textures = canvas.take_textures(std::mem::take(&mut output.textures_delta));
         let primitives = ui.tessellate(std::mem::take(&mut output.shapes), pixels_per_point);
         self.capture(canvas, &primitives, &screen)?;
-        if let (Some(trace), Some(line)) = (&mut self.trace, line) {
+        if let (Some(trace), Some(mut line)) = (&mut self.trace, line) {
+            // What the panel was asked for begins with this frame.
+            line.is_moving = self.desk.session.camera.navigator.is_moving();
             trace.write(line).map_err(|source| WindowError::Trace { source })?;
         }
 
