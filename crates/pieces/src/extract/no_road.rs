@@ -23,7 +23,7 @@ impl fmt::Display for NoRoad {
 }
 
 /// Why an extract gives no road under a table of classes.
-pub(super) fn why(extract: &ExtractSummary, table: &FrcTable) -> NoRoad {
+pub(crate) fn why(extract: &ExtractSummary, table: &FrcTable) -> NoRoad {
     const RIGHT_ONE: &str = "is it the right extract?";
     let ways = extract.highway_ways;
     let because = |reason: String, advice: &str| NoRoad { reason, advice: advice.to_owned() };
