@@ -34,7 +34,7 @@ pub(crate) struct FileState {
 }
 
 impl Stamp {
-    pub(super) fn of_file(path: &Path) -> io::Result<Self> {
+    pub(crate) fn of_file(path: &Path) -> io::Result<Self> {
         Ok(Self::File(path.to_path_buf(), settled(path)?))
     }
 
@@ -70,13 +70,13 @@ impl Stamp {
 
 impl FileState {
     /// The size in bytes.
-    pub(super) fn size(&self) -> u64 {
+    pub(crate) fn size(&self) -> u64 {
         self.size
     }
 
     /// When it was written last, nanoseconds after the start of 1970 (negative: before); `None` where the file system does not
     /// tell.
-    pub(super) fn modified_ns(&self) -> Option<i64> {
+    pub(crate) fn modified_ns(&self) -> Option<i64> {
         let time = self.modified?;
         let nanoseconds = match time.duration_since(SystemTime::UNIX_EPOCH) {
             Ok(after) => i64::try_from(after.as_nanos()).ok()?,
@@ -120,7 +120,7 @@ fn settled(path: &Path) -> io::Result<FileState> {
 
 /// A name as GDAL takes it, with the path of the file on disk in it made absolute: of a virtual file's archive, of a container
 /// (`GPKG:dem.gpkg:heights`), or the whole name. Names of files on a server stay as they are.
-pub(super) fn absolute(name: &str) -> io::Result<String> {
+pub(crate) fn absolute(name: &str) -> io::Result<String> {
     let file = if name.starts_with("/vsi") {
         match container(name) {
             Some(file) => file,
