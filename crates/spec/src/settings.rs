@@ -43,7 +43,7 @@ pub struct PlanSettings {
     pub dem: Vec<PathBuf>,
     /// A package whose terrain is taken as it is; then `dem` is empty, and `terrain` what the package records.
     pub terrain_of: Option<PathBuf>,
-    /// OpenStreetMap extracts, read as one; in the order of [`extract_names`](crate::extract_names), so that nothing depends on the order in
+    /// OpenStreetMap extracts, read as one; in the order of [`extract_names`](crate::inputs::extract_names), so that nothing depends on the order in
     /// which they were named. Without any, terrain alone is planned.
     pub osm: Vec<PathBuf>,
     /// How the ground is made.

@@ -29,7 +29,7 @@ pub struct FinestHeights {
 }
 
 impl FinestHeights {
-    /// Cuts a tile out of a window in which its own north-west node is in column `left` and row `top`, both at least [`HALO`]. `None`
+    /// Cuts a tile out of a window in which its own north-west node is in column `left` and row `top`, both at least `HALO`. `None`
     /// where the tile itself has no height.
     #[must_use]
     pub fn cut(window: &DemWindow, left: usize, top: usize) -> Option<Self> {
@@ -57,7 +57,7 @@ impl FinestHeights {
         Some(Self { with_halo, filled })
     }
 
-    /// The tile's own nodes, borders included, and so many more on every side, at most [`HALO`].
+    /// The tile's own nodes, borders included, and so many more on every side, at most `HALO`.
     #[must_use]
     pub fn with_halo(&self, halo: usize) -> HeightGrid {
         self.with_halo.inner(HALO - halo)
@@ -108,7 +108,7 @@ pub(crate) fn height_bytes(grid: &HeightGrid) -> Vec<u8> {
     grid.raw().iter().flat_map(|height_m| height_m.to_le_bytes()).collect()
 }
 
-/// The square grid of so many nodes a side that [`height_bytes`] wrote.
+/// The square grid of so many nodes a side that `height_bytes` wrote.
 #[must_use]
 pub fn grid_of(bytes: &[u8], side: usize) -> HeightGrid {
     let heights_m =

@@ -70,7 +70,7 @@ impl TilePieces {
         Self::from_bytes(&bytes).ok_or_else(|| damaged(key, &"these are no pieces of roads"))
     }
 
-    /// Reads what [`TilePiecesWriter`] made; `None` for other bytes.
+    /// Reads what `TilePiecesWriter` made; `None` for other bytes.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let mut rest = Take::new(bytes);
