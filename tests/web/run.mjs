@@ -28,7 +28,7 @@ const world = { browser, server, other, site, packages, corniche, pictures, sour
 const usual = ["units", "opening", "pixels", "sizes", "served", "failures"];
 // What people do with a page, and pictures of it, take longest; in CI days take turns.
 const uses = ["drags", "access", "keys", "streaming", "embedding", "pictures", "own_styles", "links", "gestures"];
-const names = [...usual, ...someOf(uses, 3)];
+const names = [...usual, ...someOf(uses, 5)];
 const parts = await Promise.all(names.map((name) => import(`./${name}.mjs`)));
 describe("the page of the browser viewer", () => {
   for (const { tests } of parts) tests(world);
