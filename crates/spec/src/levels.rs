@@ -115,13 +115,13 @@ impl Levels {
         self.simplify_tolerance_m(level) / self.frame.lattice_step_m()
     }
 
-    /// How far outside a tile its SV lines reach: whole cells of the finest level, by their shorter side.
     /// The most lattice steps along an axis that so many true metres are, over the data.
     #[must_use]
     pub fn steps_of_true(&self, true_m: f64) -> f64 {
         true_m * self.most_scale / self.frame.lattice_step_m()
     }
 
+    /// How far outside a tile its SV lines reach: whole cells of the finest level, by their shorter side.
     fn margin_cells(&self, level: u8) -> i64 {
         let wanted_m = (MARGIN_CELLS * self.frame.level_cell(level).shorter_m())
             .max(MIN_MARGIN_M * self.most_scale);

@@ -4,9 +4,11 @@
 use std::{collections::BTreeMap, path::PathBuf};
 
 use corniche_geom::TileId;
-use corniche_pieces::ExtractError;
 use corniche_pieces::{
-    extract::partition::{ExtractInput, partition},
+    extract::{
+        partition::{ExtractInput, partition},
+        reading_pool,
+    },
     roads::{
         counts::road_counts,
         ground_lines,
@@ -86,10 +88,7 @@ fn compare_all(
     let lengths = TrueLengths::new(frame, &manifest.coordinates, &projection);
     let work = TemporaryStore::new(observer)?;
     let (store, scratch) = (&work.store, work.scratch()?);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(request.threads)
-        .build()
-        .map_err(ExtractError::from)?;
+    let pool = reading_pool(request.threads)?;
     let outline = manifest.data_outline();
     let input = ExtractInput {
         osm: paths,

@@ -1,8 +1,7 @@
 //! The extracts that a package was made from, read again for what it does not store.
 
 use corniche_osm::{Layers, read_extract};
-use corniche_pieces::ExtractError;
-use corniche_pieces::extract::placed_reading::PlacedReading;
+use corniche_pieces::extract::{placed_reading::PlacedReading, reading_pool};
 use corniche_spec::{
     Observer,
     inputs::{Inputs, OtherInputs},
@@ -44,8 +43,7 @@ fn read(
     let projection = crs.projection(manifest.area_deg())?;
     let work = TemporaryStore::new(observer)?;
     let scratch = work.scratch()?;
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(ExtractError::from)?;
+    let pool = reading_pool(threads)?;
     let reading = PlacedReading {
         osm: &paths,
         table: &osm::chosen(&extract.table, manifest),

@@ -14,7 +14,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use syn::{ImplItem, Item, Stmt, UseTree, visit::Visit};
 
 /// Crates that start threads, or work in the threads of a pool.
-const THREADS: [(&str, &str); 11] = [
+const THREADS: [(&str, &str); 9] = [
     (
         "cli",
         "signals, the end of standard input, progress while nothing moves, a flight that is shown in a window",
@@ -22,11 +22,9 @@ const THREADS: [(&str, &str); 11] = [
     ("live", "tiles are loaded while another thread draws"),
     ("objects", "the runtime of the library for object storage"),
     ("osm", "blobs are decoded in the pool that the caller hands in"),
-    ("pieces", "objects are split in the pool in which extracts are decoded"),
-    ("pipeline", "the pool in which extracts are decoded"),
+    ("pieces", "the pool in which extracts are decoded and their objects split"),
     ("remote", "a thread that waits for the network"),
     ("serve", "connections side by side"),
-    ("verify", "the pool in which extracts are decoded"),
     ("window", "files are written while the window draws"),
     ("work", "what is made of tiles and roads side by side, and their one writer"),
 ];

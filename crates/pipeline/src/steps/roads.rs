@@ -1,8 +1,10 @@
 //! Step *roads*: the extract to pieces of roads by tile.
 
-use corniche_pieces::ExtractError;
 use corniche_pieces::{
-    extract::partition::{ExtractInput, partition},
+    extract::{
+        partition::{ExtractInput, partition},
+        reading_pool,
+    },
     roads::{overlap::check_overlap, totals::RoadTotals},
 };
 use corniche_spec::artifacts::{self, ArtifactError, Kind};
@@ -32,8 +34,7 @@ pub(crate) fn are_done(store: &dyn Artifacts) -> bool {
 
 /// Threads for the reading of an extract.
 pub(crate) fn pool(context: &Context<'_>) -> Result<rayon::ThreadPool, BuildError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(context.threads()).build();
-    Ok(pool.map_err(ExtractError::from)?)
+    Ok(reading_pool(context.threads())?)
 }
 
 /// Reads the extract, if there is one and it was not read yet; fails if none of its roads lies on the elevation data.
