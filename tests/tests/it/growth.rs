@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, fs, path::Path, process::Command};
 use corniche_testing::pbf;
 use e2e::{
     Ran, binary, build_from, build_pass, copy_pass, corniche, json, manifest, names, real_data,
-    root, sample, skip, text, write_ascii_grid,
+    root, sample, text, write_ascii_grid,
 };
 use serde_json::Value;
 
@@ -288,12 +288,12 @@ fn the_study_goes_on_where_it_was_stopped() {
             Err(error) => panic!("{python} does not start: {error}"),
         }
     };
-    let first = study(&["--errors", "20", "--no-chart"]);
+    let first = study(&["--errors", "20"]);
     assert_eq!(first.code, 0, "{}", first.err);
     let table = out.join("study.csv");
     let one = lines(&fs::read_to_string(&table).unwrap());
     assert_eq!(one.len(), 2, "the paper's case and the default");
-    let both = study(&["--errors", "20,40", "--no-chart"]);
+    let both = study(&["--errors", "20,40"]);
     assert!(
         both.code == 0 && both.err.contains("4 packages, of which 2 are measured already"),
         "{}",
@@ -316,28 +316,18 @@ fn the_study_goes_on_where_it_was_stopped() {
     // All at once, the table is the same.
     let bytes = fs::read(&table).unwrap();
     fs::remove_file(&table).unwrap();
-    assert_eq!(study(&["--errors", "20,40", "--no-chart"]).code, 0);
+    assert_eq!(study(&["--errors", "20,40"]).code, 0);
     assert!(fs::read(&table).unwrap() == bytes, "other bytes");
     assert_eq!(names(&out), ["study.csv"], "nothing is left behind");
 
-    let has_matplotlib = Command::new(&python).args(["-c", "import matplotlib"]).output();
-    if has_matplotlib.is_ok_and(|ran| ran.status.success()) {
-        assert_eq!(study(&["--errors", "20,40"]).code, 0);
-        let drawn = fs::read_to_string(out.join("study.svg")).unwrap();
-        assert!(drawn.contains("the paper: about 10") && drawn.contains("cell 40 m"));
-    } else {
-        skip("the chart of the study: no matplotlib");
-        let refused = study(&["--errors", "20,40"]);
-        assert!(refused.code == 2 && refused.err.contains("--no-chart"), "{}", refused.err);
-    }
     let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
-    let own = ["--dem", text(&dem), "--osm", text(&osm), "--errors", "20", "--no-chart"];
+    let own = ["--dem", text(&dem), "--osm", text(&osm), "--errors", "20"];
     let other = study(&own);
     assert!(other.code == 2 && other.err.contains("name another folder"), "{}", other.err);
     for (arguments, word) in [
         (&["--errors", "-1"][..], "no positive number"),
         (&["--dem", text(&dem)], "go together"),
-        (&["--region", "tirol", "--dem", text(&dem), "--osm", text(&osm)], "data of its own"),
+        (&["--dem", text(&dem), "--osm", text(&osm)], "give --errors"),
     ] {
         let ran = study(arguments);
         assert!(ran.code == 2 && ran.err.contains(word), "{arguments:?}: {}", ran.err);
