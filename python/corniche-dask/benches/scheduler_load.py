@@ -34,7 +34,21 @@ def empty_part(task: PartTask) -> PartResult:
     """Returns a digest, as a part that was made would."""
     digest = task.key[-32:]
     return PartResult(
-        task.job.id, task.job.step, task.job.work, 0, None, True, f"{task.job.id}.{digest}.part", digest, 0, "", 0, 0, 0, 0, 0, 1 << 30, 1
+        id=task.job.id,
+        step=task.job.step,
+        work=task.job.work,
+        was_made=True,
+        name=f"{task.job.id}.{digest}.part",
+        digest=digest,
+        file_bytes=0,
+        worker="",
+        seconds=0,
+        cpu_seconds=0,
+        read_bytes=0,
+        written_bytes=0,
+        peak_bytes=0,
+        memory_bytes=1 << 30,
+        threads=1,
     )
 
 

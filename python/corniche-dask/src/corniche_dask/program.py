@@ -27,12 +27,9 @@ def make_plan(program: str, options: Sequence[str], plan: Path) -> dict[str, obj
     """Writes the plan of a build with these options of ``corniche plan``; returns its estimates."""
     printed = run("plan", *options, corniche=program, output=plan, overwrite=True, json=True)
     try:
-        estimate = json.loads(printed)["estimate"]
+        return dict(json.loads(printed)["estimate"])
     except (ValueError, KeyError, TypeError) as error:
         raise CornicheError(f"corniche plan printed no estimates: {error!r}") from error
-    if not isinstance(estimate, dict):
-        raise CornicheError("corniche plan printed no estimates")
-    return estimate
 
 
 def generator_of(plan: str) -> str:

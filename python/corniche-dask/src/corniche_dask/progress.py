@@ -46,13 +46,11 @@ class Progress:
             return
         for step, made, total in self._flow.steps():
             if step == job.step and made == total:
-                self._write(f"{step}: all {total} parts after {duration(time.monotonic() - self._begun)}")
+                self._write(f"{step}: all {total} parts after {duration(time.monotonic() - self._begun)}\n")
 
     def say(self, text: str) -> None:
         """A line that is shown with ``--quiet``, too."""
-        with self._lock:
-            self._out.write(("\r\x1b[K" if self._on_terminal and not self._quiet else "") + f"corniche-dask: {text}\n")
-            self._out.flush()
+        self._write(("\r\x1b[K" if self._on_terminal and not self._quiet else "") + f"corniche-dask: {text}\n")
 
     def end(self) -> None:
         """Nothing more is to be told."""
@@ -61,14 +59,13 @@ class Progress:
             self._thread.join()
             self._thread = None
             if self._on_terminal:
-                with self._lock:
-                    self._out.write("\r\x1b[K")
-                    self._out.flush()
+                self._write("\r\x1b[K")
 
     def _tell_often(self) -> None:
         while not self._over.wait(_ON_TERMINAL if self._on_terminal else _ELSEWHERE):
             if self._flow is not None:
-                self._write(self.line(self._flow, time.monotonic() - self._begun))
+                line = self.line(self._flow, time.monotonic() - self._begun)
+                self._write(f"\r{line}\x1b[K" if self._on_terminal else f"{line}\n")
 
     def line(self, flow: Flow, seconds: float) -> str:
         """How far the steps are that have begun and are not over."""
@@ -81,9 +78,9 @@ class Progress:
         share = f"{100 * done / self._work_at_begin:.0f} % of the work" if self._work_at_begin > 0 else ""
         return ", ".join(piece for piece in [*steps, f"{flow.at_work} at work", share, rate, left] if piece)
 
-    def _write(self, line: str) -> None:
+    def _write(self, text: str) -> None:
         with self._lock:
-            self._out.write(f"\r{line}\x1b[K" if self._on_terminal else f"{line}\n")
+            self._out.write(text)
             self._out.flush()
 
 

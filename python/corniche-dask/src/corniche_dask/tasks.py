@@ -44,7 +44,7 @@ class PartTask:
     setting: Setting
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PartResult:
     """What became of a part: a digest of it, and what it took."""
 
@@ -53,14 +53,14 @@ class PartResult:
     #: What ``corniche jobs`` estimated, in seconds on one core.
     work: float
     #: 0; or 2 or 3, with an error: it is of no use to try again.
-    exit_code: int
-    error: str | None
+    exit_code: int = 0
+    error: str | None = None
     #: Whether it was made now; otherwise it was in the store already, or holds no data.
-    was_made: bool
+    was_made: bool = False
     #: The sealed part's file name, or the package's path.
-    name: str | None
+    name: str | None = None
     #: The first 16 bytes of a SHA-256 over the part's content, as the file name has it.
-    digest: str | None
+    digest: str | None = None
     #: Bytes of the file, where the worker can look.
     file_bytes: int | None
     worker: str

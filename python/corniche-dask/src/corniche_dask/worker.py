@@ -12,12 +12,14 @@ import time
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import asdict
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from distributed import Reschedule, Worker, WorkerPlugin, get_worker
 
-from corniche.child import Child, Ended
+from corniche.child import Child, Ended, Usage
 from corniche.errors import EXISTS, FAILED, INTERRUPTED, UNUSABLE, CornicheError, ProgramError
 from corniche.program import find_program, version_of
 
@@ -35,6 +37,7 @@ _CLOSES_WITHIN = 3.0
 _BEING_BUILT = "is being built by another process"
 #: Seconds until it is tried again.
 _TRIES_EVERY = 2.0
+_NEVER_BEGUN = Ended(UNUSABLE, stdout="", log=[], seconds=0.0, usage=Usage(), was_stopped=False)
 
 
 class PlanPlugin(WorkerPlugin):
@@ -139,7 +142,7 @@ def make_part(task: PartTask) -> PartResult:
         limits = _limits(worker, setting)
     except CornicheError as error:
         message = f"part {job.id} cannot be made on {worker.address}: {error}"
-        return _result(task, worker, Limits(0, 0), None, exit_code=UNUSABLE, error=message)
+        return _result(task, worker, Limits(0, 0), _NEVER_BEGUN, exit_code=UNUSABLE, error=message)
     plan = str(_plan(worker, setting))
     if not job.is_merge:
         command = [program, "part", plan, *job.args, *_common(setting, limits)]
@@ -230,36 +233,19 @@ def _judged(task: PartTask, worker: Worker, limits: Limits, ended: Ended) -> Par
     raise PartFailed(message)
 
 
-def _result(
-    task: PartTask,
-    worker: Worker,
-    limits: Limits,
-    ended: Ended | None,
-    exit_code: int = 0,
-    error: str | None = None,
-    name: str | None = None,
-    digest: str | None = None,
-    was_made: bool = False,
-) -> PartResult:
-    usage = ended.usage if ended else None
+def _result(task: PartTask, worker: Worker, limits: Limits, ended: Ended, name: str | None = None, **told: Any) -> PartResult:
     return PartResult(
         id=task.job.id,
         step=task.job.step,
         work=task.job.work,
-        exit_code=exit_code,
-        error=error,
-        was_made=was_made,
         name=name,
-        digest=digest,
-        file_bytes=_size(name if task.job.is_merge or ended is None else ended.stdout.strip()) if name else None,
+        file_bytes=_size(name if task.job.is_merge else ended.stdout.strip()) if name else None,
         worker=worker.address,
-        seconds=ended.seconds if ended else 0.0,
-        cpu_seconds=usage.cpu_seconds if usage else None,
-        read_bytes=usage.read_bytes if usage else None,
-        written_bytes=usage.written_bytes if usage else None,
-        peak_bytes=usage.peak_bytes if usage else None,
+        seconds=ended.seconds,
         memory_bytes=limits.memory_bytes,
         threads=limits.threads,
+        **asdict(ended.usage),
+        **told,
     )
 
 

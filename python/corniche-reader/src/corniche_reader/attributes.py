@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,8 @@ FORMS = ("ordinary", "dual_carriageway", "link", "roundabout")
 STRUCTURES = ("ground", "bridge", "tunnel")
 #: As OSM tags a way: open in both directions, along the line alone, against it alone.
 ONEWAYS = ("no", "yes", "-1")
+#: The columns of the section of tags.
+TAGS = ("highway", "maxspeed", "sac_scale", "tracktype", "lanes", "width")
 
 
 @dataclass(frozen=True)
@@ -40,18 +43,6 @@ class Attributes:
     tracktype: str | None
 
 
-@dataclass(frozen=True)
-class _Tags:
-    """Columns of the section of tags, a value for each way."""
-
-    highway: list[str | None]
-    maxspeed: list[str | None]
-    sac_scale: list[str | None]
-    tracktype: list[str | None]
-    lanes: list[int | None]
-    width: list[float | None]
-
-
 def read_attributes(data: bytes, what: str, tags: bytes | None, tags_what: str) -> list[Attributes]:
     """Decodes the section of attributes, a record of bincode, and the one of tags."""
     cursor = Cursor(data, what)
@@ -59,21 +50,16 @@ def read_attributes(data: bytes, what: str, tags: bytes | None, tags_what: str) 
     steps, forms, structures, layers, oneways, *names = (_words(cursor, width) for width in (8, 1, 1, 1, 1, 4, 4, 4))
     cursor.end()
     found, way = [], 0
-    of_tags = _read_tags(tags, len(steps), tags_what) if tags is not None else _Tags(*([None] * len(steps) for _ in range(6)))
-    columns = zip(
-        steps, forms, structures, layers, oneways, *names,
-        of_tags.highway, of_tags.lanes, of_tags.width, of_tags.maxspeed, of_tags.sac_scale, of_tags.tracktype,
-        strict=True,
-    )  # fmt: skip
+    of_tags = _read_tags(tags, len(steps), tags_what) if tags is not None else [dict.fromkeys(TAGS)] * len(steps)
+    columns = zip(steps, forms, structures, layers, oneways, *names, of_tags, strict=True)
     try:
         text = [content.decode() or None for content in texts]
-        for step, form, structure, layer, oneway, name, reference, surface, highway, lanes, width, maxspeed, sac_scale, tracktype in columns:
+        for step, form, structure, layer, oneway, name, reference, surface, tagged in columns:
             way += step - (step >> 63 << 64)
             lies = STRUCTURES[structure]
             found.append(
                 Attributes(
                     way_id=way,
-                    highway=highway,
                     form=FORMS[form],
                     name=text[name],
                     ref=text[reference],
@@ -82,11 +68,7 @@ def read_attributes(data: bytes, what: str, tags: bytes | None, tags_what: str) 
                     layer=layer - (layer >> 7 << 8),
                     oneway=ONEWAYS[oneway],
                     surface=text[surface],
-                    lanes=lanes,
-                    width=width,
-                    maxspeed=maxspeed,
-                    sac_scale=sac_scale,
-                    tracktype=tracktype,
+                    **tagged,
                 )
             )
     except (ValueError, IndexError) as cause:
@@ -94,8 +76,8 @@ def read_attributes(data: bytes, what: str, tags: bytes | None, tags_what: str) 
     return found
 
 
-def _read_tags(data: bytes, ways: int, what: str) -> _Tags:
-    """What the section of tags says of so many ways."""
+def _read_tags(data: bytes, ways: int, what: str) -> list[dict[str, Any]]:
+    """What the section of tags says of each of so many ways."""
     cursor = Cursor(data, what)
     count = cursor.varint()
     if count > len(data):
@@ -107,13 +89,14 @@ def _read_tags(data: bytes, ways: int, what: str) -> _Tags:
     cursor.end()
     try:
         texts = [None, *(content.decode() for content in contents)]
-        highway, maxspeed, sac_scale, tracktype = ([texts[index] for index in column] for column in columns[:4])
+        named = [[texts[index] for index in column] for column in columns[:4]]
     except (ValueError, IndexError) as cause:
         raise PayloadError(f"{what}: {cause}") from cause
     lanes, widths = columns[4:]
     if max(lanes, default=0) > 255 or max(widths, default=0) >= 1 << 32:
         raise PayloadError(f"{what}: lanes or a width beyond their limits")
-    return _Tags(highway, maxspeed, sac_scale, tracktype, [one or None for one in lanes], [one / 1000 if one else None for one in widths])
+    numbers = [one or None for one in lanes], [one / 1000 if one else None for one in widths]
+    return [dict(zip(TAGS, of_way, strict=True)) for of_way in zip(*named, *numbers, strict=True)]
 
 
 def _word(cursor: Cursor, width: int) -> int:

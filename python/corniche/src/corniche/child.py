@@ -34,12 +34,12 @@ LOG_BYTES = 64 * 1024
 class Usage:
     """What a child used, as far as the system tells."""
 
-    cpu_seconds: float | None
+    cpu_seconds: float | None = None
     #: Bytes that it asked the system to read and to write, from disk or from the cache, without network connections.
-    read_bytes: int | None
-    written_bytes: int | None
+    read_bytes: int | None = None
+    written_bytes: int | None = None
     #: The most resident memory.
-    peak_bytes: int | None
+    peak_bytes: int | None = None
 
 
 @dataclass(frozen=True)

@@ -78,9 +78,8 @@ def ran(
 ) -> Ran:
     """The same, without an exception where the program fails."""
     command = [word if isinstance(word, str) else word_of_path(word) for word in words]
-    refuse(options, reserved_of(command))
     teller = Bars() if progress is True else progress or None
-    child = Child([find_program(corniche), *command, *voice_of(command), *words_of(options)], os.environ)
+    child = start(command, options, corniche)
     listener = Listener(teller)
     try:
         ended = child.wait(heard=listener.hear)
@@ -91,17 +90,15 @@ def ran(
     return Ran(ended.exit_code, ended.stdout, listener.error_of(command, ended))
 
 
-def voice_of(command: list[str]) -> list[str]:
-    """Options by which the program tells records, and ends when this process does."""
+def start(command: list[str], options: Mapping[str, object], corniche: str | os.PathLike[str] | None) -> Child:
+    """Starts a command so that it tells records, and ends when this process does."""
+    tells_progress = bool(command) and command[0] in TELL_PROGRESS
+    refuse(options, _VOICE | _OTHER_VOICE if tells_progress else _VOICE)
+    voice = ["--json-progress" if tells_progress else "--log-format=json", "--die-with-parent"]
     # It takes no options, and is over at once.
     if command[:1] == ["help"]:
-        return []
-    return ["--json-progress" if _tells_progress(command) else "--log-format=json", "--die-with-parent"]
-
-
-def reserved_of(command: list[str]) -> frozenset[str]:
-    """Options of a command that callers cannot give."""
-    return _VOICE | _OTHER_VOICE if _tells_progress(command) else _VOICE
+        voice = []
+    return Child([find_program(corniche), *command, *voice, *words_of(options)], os.environ)
 
 
 def refuse(options: Mapping[str, object], reserved: Iterable[str]) -> None:
@@ -113,10 +110,6 @@ def refuse(options: Mapping[str, object], reserved: Iterable[str]) -> None:
         is_off = options.get(name) is None or (options[name] is False and name != "json")
         if not is_off:
             raise UsageError(f"{name}={options[name]!r} is not for Python: these functions set it themselves; leave it out")
-
-
-def _tells_progress(command: list[str]) -> bool:
-    return bool(command) and command[0] in TELL_PROGRESS
 
 
 class Listener:

@@ -9,9 +9,8 @@ from typing import Any
 
 from .child import Child
 from .errors import CornicheError
-from .options import word_of_path, words_of
-from .program import find_program
-from .running import Listener, refuse, reserved_of, voice_of
+from .options import word_of_path
+from .running import Listener, start
 
 #: Those that run. What a notebook shows must stay when nothing names its server any more.
 _running: set[Serving] = set()
@@ -58,8 +57,7 @@ def serve(*packages: str | os.PathLike[str], port: int = 0, corniche: str | os.P
     :raises CornicheError: with the program's own words
     """
     command = ["serve", *(word_of_path(package) for package in packages)]
-    refuse(options, reserved_of(command))
-    child = Child([find_program(corniche), *command, *voice_of(command), *words_of({"port": port, **options})], os.environ)
+    child = start(command, {"port": port, **options}, corniche)
     url = child.first_line()
     if url is None:
         listener = Listener()
