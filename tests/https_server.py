@@ -1,4 +1,4 @@
-"""Serves a folder on 127.0.0.1 by https, with ranges of bytes as GDAL asks for them: python3 https-server.py FOLDER PORT CERTIFICATE KEY."""
+"""Serves a folder on 127.0.0.1 by https, with ranges of bytes as GDAL asks for them: python3 https_server.py FOLDER PORT CERTIFICATE KEY."""
 
 import http.server
 import os
