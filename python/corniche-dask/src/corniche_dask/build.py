@@ -6,6 +6,7 @@ import json
 import os
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -84,86 +85,87 @@ def build(
         overwrite=overwrite,
         defects=absolute(defects) if defects else None,
     )
-    return _Build(client, setting, text, slots, least_work, progress).run(estimate)
+    return _Build(client, setting, text, least_work, progress, Slots(client, slots or 1)).run(estimate)
 
 
+@dataclass
 class _Build:
-    def __init__(self, client: Client, setting: Setting, plan: str, slots: int | None, least_work: float | None, progress: Progress) -> None:
-        self._client = client
-        self._setting = setting
-        self._plan = plan
-        self._least_work = least_work
-        self._progress = progress
-        self._slots = Slots(client, slots or 1)
+    client: Client
+    setting: Setting
+    plan: str
+    least_work: float | None
+    progress: Progress
+    slots: Slots
+    has_roads: bool = False
 
     def run(self, estimate: dict[str, Any] | None) -> Summary:
         begun = time.monotonic()
         self._make_folders()
         self._wait_for_worker()
         self._look_at_workers()
-        plugin = PlanPlugin(self._plan, self._setting.plan_digest)
-        self._client.register_plugin(plugin, name=plugin.name)
-        summary = Summary(self._setting.output, slots=self._slots.count(), estimate=estimate, input_bytes=_input_bytes(self._plan))
+        plugin = PlanPlugin(self.plan, self.setting.plan_digest)
+        self.client.register_plugin(plugin, name=plugin.name)
+        summary = Summary(self.setting.output, slots=self.slots.count(), estimate=estimate, input_bytes=_input_bytes(self.plan))
         flow = Flow(self._parts(with_store=False), self._refine)
 
         def made(job: Job, result: PartResult) -> None:
             if result.error is not None:
                 raise PartRefused(result.error, result.exit_code)
             summary.parts.append(result)
-            self._progress.made(job)
+            self.progress.made(job)
 
         drive: Drive[PartResult] = Drive(
-            self._client,
+            self.client,
             flow,
             lambda job: self._submit(job, flow),
-            self._slots.count,
+            self.slots.count,
             made,
-            self._progress.say,
+            self.progress.say,
         )
-        self._progress.begin(flow)
+        self.progress.begin(flow)
         try:
             drive.run()
         finally:
-            self._progress.end()
+            self.progress.end()
         summary.seconds = time.monotonic() - begun
         return summary
 
     def _submit(self, job: Job, flow: Flow) -> Future[Any]:
-        task = PartTask(key_of(self._setting, job), job, self._setting)
-        return self._client.submit(
+        task = PartTask(key_of(self.setting, job), job, self.setting)
+        return self.client.submit(
             make_part,
             task,
             key=task.key,
             pure=True,
             retries=RETRIES,
             priority=int(flow.rank(job)),
-            resources=self._slots.resources,
+            resources=self.slots.resources,
         )
 
     def _refine(self, step: str) -> list[Job] | None:
-        if step != _REFINED or not self._has_roads:
+        if step != _REFINED or not self.has_roads:
             return None
         return [job for job in self._parts(with_store=True) if job.step == step]
 
     def _parts(self, with_store: bool) -> list[Job]:
-        count = self._slots.count()
-        content = json.dumps([self._setting.plan_digest, self._setting.stores, count, self._least_work, with_store])
+        count = self.slots.count()
+        content = json.dumps([self.setting.plan_digest, self.setting.stores, count, self.least_work, with_store])
         key = f"jobs-0{digest_of(content)[:32]}"
-        future = self._client.submit(list_parts, self._setting, count, self._least_work, with_store, key=key, pure=True, retries=RETRIES)
+        future = self.client.submit(list_parts, self.setting, count, self.least_work, with_store, key=key, pure=True, retries=RETRIES)
         try:
             jobs = parse_jobs(str(future.result()))
         except CornicheError:
             raise
         except Exception as error:
-            raise (lost(self._client) if future.status in ("cancelled", "lost") else PartFailed(f"corniche jobs: {error!r}")) from error
+            raise (lost(self.client) if future.status in ("cancelled", "lost") else PartFailed(f"corniche jobs: {error!r}")) from error
         finally:
             future.release()
-        self._has_roads = any(job.step == "roads" for job in jobs)
+        self.has_roads = any(job.step == "roads" for job in jobs)
         return jobs
 
     def _make_folders(self) -> None:
         """Makes the folder that is written. Where this machine cannot, because only workers see it, they say if it is missing."""
-        first = self._setting.stores[0]
+        first = self.setting.stores[0]
         if not is_object_storage(first):
             try:
                 Path(first).mkdir(parents=True, exist_ok=True)
@@ -172,24 +174,24 @@ class _Build:
 
     def _wait_for_worker(self) -> None:
         is_told = False
-        while not workers_of(self._client):
-            if self._client.status not in ("running", "connecting"):
-                raise lost(self._client)
+        while not workers_of(self.client):
+            if self.client.status not in ("running", "connecting"):
+                raise lost(self.client)
             if not is_told:
-                self._progress.say("waiting for a first worker")
+                self.progress.say("waiting for a first worker")
                 is_told = True
             time.sleep(_LOOKS_EVERY)
 
     def _look_at_workers(self) -> None:
         """Before anything is made: whether all workers can make parts, and whether the package may be written."""
-        wrong: dict[str, Any] = self._client.run(look_at_worker, self._setting, on_error="return")
+        wrong: dict[str, Any] = self.client.run(look_at_worker, self.setting, on_error="return")
         lines = [f"  {worker}: {why}" for worker, why in sorted(wrong.items()) if why is not None]
         if lines:
             raise ProgramError("\n".join(["not all workers can make parts of this plan:", *lines]))
-        output = self._setting.output
-        if self._setting.overwrite or is_object_storage(output):
+        output = self.setting.output
+        if self.setting.overwrite or is_object_storage(output):
             return
-        if any(self._client.run(is_there, output, workers=[min(wrong)]).values()):
+        if any(self.client.run(is_there, output, workers=[min(wrong)]).values()):
             raise TargetExists(f"{output} exists; -O replaces it")
 
 

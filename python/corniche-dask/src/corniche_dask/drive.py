@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
 from distributed import Client, Future, KilledWorker, as_completed
@@ -72,36 +73,30 @@ def lost(client: Client) -> SchedulerLost:
     return SchedulerLost(f"the scheduler at {address} is gone; what was made is in the store, and the same command goes on from there")
 
 
+@dataclass
 class Drive(Generic[Result]):
     """Makes all parts of a flow."""
 
-    def __init__(
-        self,
-        client: Client,
-        flow: Flow,
-        submit: Callable[[Job], Future[Any]],
-        slots: Callable[[], int],
-        made: Callable[[Job, Result], None],
-        told: Callable[[str], None] = lambda _: None,
-    ) -> None:
-        """``submit`` gives a part to the client; ``made`` takes its result, and ends all by raising; ``told`` takes warnings."""
-        self._client = client
-        self._flow = flow
-        self._submit = submit
-        self._slots = slots
-        self._made = made
-        self._told = told
-        self._losses: dict[str, int] = {}
-        self._jobs: dict[Future[Any], Job] = {}
+    client: Client
+    flow: Flow
+    #: Gives a part to the client.
+    submit: Callable[[Job], Future[Any]]
+    slots: Callable[[], int]
+    #: Takes a part's result, and ends all by raising.
+    made: Callable[[Job, Result], None]
+    #: Takes warnings.
+    told: Callable[[str], None] = lambda _: None
+    _losses: dict[str, int] = field(default_factory=dict)
+    _jobs: dict[Future[Any], Job] = field(default_factory=dict)
 
     def run(self) -> None:
         """Returns when all parts are made. When it raises, the parts that are being made are cancelled."""
         # Loops are named for clients that are not the default one.
-        completed = as_completed(loop=self._client.loop, with_results=True, raise_errors=False)
+        completed = as_completed(loop=self.client.loop, with_results=True, raise_errors=False)
         try:
-            while not self._flow.is_over:
-                while self._flow.at_work < self._slots() and (job := self._flow.take()) is not None:
-                    future = self._submit(job)
+            while not self.flow.is_over:
+                while self.flow.at_work < self.slots() and (job := self.flow.take()) is not None:
+                    future = self.submit(job)
                     self._jobs[future] = job
                     completed.add(future)
                 if not self._jobs:
@@ -115,8 +110,8 @@ class Drive(Generic[Result]):
     def _take(self, completed: as_completed, future: Future[Any], result: Any) -> None:
         job = self._jobs.pop(future)
         if future.status == "finished":
-            self._flow.made(job)
-            self._made(job, result)
+            self.flow.made(job)
+            self.made(job, result)
             # The key is forgotten, so that a later build asks the store and not this result.
             future.release()
         elif future.status == "error":
@@ -124,18 +119,18 @@ class Drive(Generic[Result]):
             if not isinstance(error, KilledWorker):
                 raise error
             self._give_out_again(completed, future, job, error)
-        elif future.status in ("lost", "pending") and self._client.status == "running":
+        elif future.status in ("lost", "pending") and self.client.status == "running":
             # The worker with the result died at this moment. Dask makes the part again, which finds it in the store.
             self._jobs[future] = job
             completed.add(future)
         else:
-            raise lost(self._client)
+            raise lost(self.client)
 
     def _give_out_again(self, completed: as_completed, future: Future[Any], job: Job, error: KilledWorker) -> None:
         losses = self._losses[job.id] = self._losses.get(job.id, 0) + 1
         if losses > LOSSES:
             raise PartsLost(f"part {job.id} was given up: workers died with it again and again, {error.last_worker} the last") from error
-        self._told(f"workers died with part {job.id}; it is given out again ({losses} of {LOSSES})")
+        self.told(f"workers died with part {job.id}; it is given out again ({losses} of {LOSSES})")
         future.retry()
         self._jobs[future] = job
         completed.add(future)
@@ -143,8 +138,8 @@ class Drive(Generic[Result]):
     def _cancel(self) -> None:
         futures = list(self._jobs)
         self._jobs.clear()
-        if futures and self._client.status == "running":
+        if futures and self.client.status == "running":
             try:
-                self._client.cancel(futures)
+                self.client.cancel(futures)
             except Exception as error:  # noqa: BLE001  the error that ended the run is the one to tell
-                self._told(f"parts that are being made could not be cancelled: {error!r}")
+                self.told(f"parts that are being made could not be cancelled: {error!r}")
