@@ -81,11 +81,11 @@ link_folder() {
 
 # Compiles the program. No path of this machine is in it, so that another folder gives the same bytes.
 compile_release() {
-    local page=$1 crates maps
+    local crates maps
     cargo fetch --locked >&2
     crates=$(printf '%s\n' "${CARGO_HOME:-$HOME/.cargo}"/registry/src/*/ | head -n 1)
     maps="--remap-path-prefix=${crates%/}=/crates --remap-path-prefix=$PWD=/corniche --remap-path-prefix=$target=/target"
-    CARGO_TARGET_DIR=$target CORNICHE_PAGE=$page PKG_CONFIG_LIBDIR=$work/link PKG_CONFIG_ALLOW_CROSS=1 \
+    CARGO_TARGET_DIR=$target PKG_CONFIG_LIBDIR=$work/link PKG_CONFIG_ALLOW_CROSS=1 \
         CARGO_PROFILE_RELEASE_DEBUG=line-tables-only \
         CFLAGS="-ffile-prefix-map=${crates%/}=/crates" CXXFLAGS="-ffile-prefix-map=${crates%/}=/crates" \
         RUSTFLAGS="$maps -C link-arg=-Wl,-rpath,\$ORIGIN/../lib/corniche/lib -C link-arg=-Wl,--allow-shlib-undefined" \

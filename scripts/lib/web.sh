@@ -19,6 +19,14 @@ find_web_cargo() {
         /usr/bin/cargo build --locked --target "$WASM" -Zbuild-std=std,panic_abort)
 }
 
+# The compiler of `web_cargo`, in a line.
+web_compiler() {
+    case ${web_cargo[0]} in
+    env) /usr/bin/rustc --version ;;
+    *) rustc --version ;;
+    esac
+}
+
 missing_for_debian_web() {
     /usr/bin/rustc --version 2>/dev/null | grep -qE "^rustc 1\.(9[5-9]|[1-9][0-9][0-9])" || echo rustc-web
     [ -x /usr/bin/cargo ] || echo cargo-web

@@ -26,8 +26,8 @@ const LANGUAGES: [(&str, &str); 6] =
     [("rs", "//"), ("wgsl", "//"), ("js", "//"), ("mjs", "//"), ("py", "#"), ("sh", "#")];
 /// Folders of product code beside the crates.
 const FOLDERS: [&str; 3] = ["config", "python", "scripts"];
-/// Folders whose files are tests, measurements or examples.
-const NOT_PRODUCT: [&str; 4] = ["tests", "benches", "examples", "fuzz_targets"];
+/// Folders whose files are tests, measurements, examples, or the page that is made from the crates.
+const NOT_PRODUCT: [&str; 5] = ["tests", "benches", "examples", "fuzz_targets", "page"];
 /// A crate of tests alone.
 const FOR_TESTS: &str = "testing";
 

@@ -18,6 +18,7 @@ mod budget;
 mod figures;
 mod files;
 mod graph;
+mod page;
 mod source;
 mod uses;
 
@@ -25,5 +26,6 @@ pub use budget::{BUDGET, Bytes, over_budget, product_bytes, read_budget, sunk};
 pub use figures::{CrateFigures, Function, figures};
 pub use files::{files_below, root};
 pub use graph::{Cycle, Graph};
+pub use page::{PAGE, page_sources};
 pub use source::{Crate, Module, attributes_of, crates_of, is_test, read_crate};
 pub use uses::{Use, uses};

@@ -2,6 +2,7 @@
 //!
 //! `cargo run -p corniche-tidy [FOLDER OF A WORKSPACE]`
 //! `cargo run -p corniche-tidy budget [--sink]`: bytes of product code by crate beside their budget; lowers the budget to them.
+//! `cargo run -p corniche-tidy page`: the hash of what the page in the program is made from.
 
 use std::{
     collections::BTreeSet,
@@ -14,7 +15,8 @@ use std::{
 
 use anyhow::{Context as _, Result};
 use corniche_tidy::{
-    BUDGET, Bytes, CrateFigures, Graph, crates_of, figures, over_budget, product_bytes,
+    BUDGET, Bytes, CrateFigures, Graph, crates_of, figures, over_budget, page_sources,
+    product_bytes,
     read_budget, read_crate, root, sunk, uses,
 };
 
@@ -28,6 +30,10 @@ fn main() -> Result<()> {
     if first.as_deref() == Some("budget") {
         show_budget(arguments.next().as_deref() == Some("--sink"), &mut text)?;
         io::stdout().write_all(text.as_bytes())?;
+        return Ok(());
+    }
+    if first.as_deref() == Some("page") {
+        writeln!(io::stdout(), "{}", page_sources(&root())?)?;
         return Ok(());
     }
     let root = first.map_or_else(|| PathBuf::from("."), PathBuf::from);

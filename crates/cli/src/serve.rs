@@ -27,9 +27,6 @@ use crate::{
     table::bytes,
 };
 
-/// Whether `serve` shows a page without `--page`.
-pub(crate) const HAS_PAGE: bool = page::IS_BUILT_IN;
-
 pub(crate) fn run(args: &ServeArgs) -> Result<ExitCode, Failure> {
     let page = page::load(args.page.as_deref())?;
     let packages = shown::open(&args.packages)?;

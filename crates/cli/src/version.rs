@@ -19,7 +19,7 @@ pub(crate) fn print_long() -> io::Result<()> {
     let backends = corniche_viewer::gpu::backends();
     let missing = corniche_gis::missing_formats();
     let text = format!(
-        "corniche {}\n{}\nformats: package {}, plan {}, store {}\ninputs: {}\npage: {}\nwgpu backends: {}\n",
+        "corniche {}\n{}\nformats: package {}, plan {}, store {}\ninputs: {}\nwgpu backends: {}\n",
         env!("CARGO_PKG_VERSION"),
         libraries(),
         corniche_tileset::FORMAT_VERSION,
@@ -30,7 +30,6 @@ pub(crate) fn print_long() -> io::Result<()> {
         } else {
             format!("all of the manual but {}", missing.join(", "))
         },
-        if crate::serve::HAS_PAGE { "in the program" } else { "none (serve needs --page)" },
         if backends.is_empty() { "none".to_owned() } else { backends.join(", ") },
     );
     messages::answer(&text)

@@ -17,7 +17,6 @@ use crate::{
     interrupt, messages,
     output::{Existing, Output},
     overlays, packages, presets,
-    serve::HAS_PAGE,
     styles::{StyleFile, file_of, style},
     view_command::command_of,
 };
@@ -108,8 +107,7 @@ fn with_way_out(error: WindowError) -> Failure {
             | WindowError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. })
     );
     let failure = Failure::from(error);
-    // Without the page, `serve` would only say that it is missing.
-    if !gives_none || !HAS_PAGE {
+    if !gives_none {
         return failure;
     }
     let said = format!("{failure}; `corniche serve` shows the package in a browser");

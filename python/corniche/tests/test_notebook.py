@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import base64
-import os
 import urllib.request
 from pathlib import Path
 
 import pytest
-
-from corniche.program import VARIABLE
 
 NOTEBOOK = Path(__file__).resolve().parents[3] / "examples" / "notebook" / "pass.ipynb"
 nbclient = pytest.importorskip("nbclient")
@@ -18,20 +15,7 @@ pytest.importorskip("matplotlib")
 pytestmark = pytest.mark.skipif(not NOTEBOOK.is_file(), reason="only in the repository")
 
 
-@pytest.fixture
-def with_page(program: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The program with a page: that of a released one, or a stand-in for one that was built without it."""
-    page = tmp_path / "page"
-    page.mkdir()
-    (page / "index.html").write_text("<!doctype html><title>Maps</title>")
-    stand_in = tmp_path / "corniche"
-    stand_in.write_text(f'#!/bin/sh\ncase "$1" in serve) exec "{program}" "$@" --page="{page}" ;; *) exec "{program}" "$@" ;; esac\n')
-    stand_in.chmod(0o755)
-    if os.environ.get(VARIABLE):
-        monkeypatch.setenv(VARIABLE, str(stand_in))
-
-
-@pytest.mark.usefixtures("with_page")
+@pytest.mark.usefixtures("program")
 def test_the_notebook_runs_and_shows_tables_pictures_and_a_map(tmp_path: Path) -> None:
     import nbformat
 

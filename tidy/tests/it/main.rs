@@ -10,5 +10,6 @@ mod invariants;
 mod links;
 mod module_graph;
 mod names;
+mod page;
 mod pages;
 mod tests_are_run;

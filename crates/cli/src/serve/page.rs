@@ -8,9 +8,6 @@ use crate::{exit::ExitCode, failure::Failure, table::bytes};
 /// What the program was built with: paths in addresses, and bytes. The build script writes it.
 const BUILT_IN: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
-/// Whether the program has a page of its own.
-pub(crate) const IS_BUILT_IN: bool = !BUILT_IN.is_empty();
-
 /// More than any page takes in memory.
 const MOST_BYTES: u64 = 512 << 20;
 
@@ -24,21 +21,15 @@ pub(crate) struct PageFile {
 
 /// The files of the page: those of a folder, or else those of the program.
 pub(crate) fn load(folder: Option<&Path>) -> Result<Vec<PageFile>, Failure> {
-    folder.map_or_else(|| built_in(BUILT_IN), read)
+    folder.map_or_else(|| Ok(built_in()), read)
 }
 
-fn built_in(files: &[(&str, &'static [u8])]) -> Result<Vec<PageFile>, Failure> {
-    if files.is_empty() {
-        return Err(Failure::unusable(
-            "this program was built without the page of the viewer; run scripts/web in the repository \
-             and give --page target/web/site, or build the program with CORNICHE_PAGE=target/web/site",
-        ));
-    }
+fn built_in() -> Vec<PageFile> {
     let file = |&(path, bytes): &(&str, &'static [u8])| PageFile {
         path: path.to_owned(),
         bytes: Cow::Borrowed(bytes),
     };
-    Ok(files.iter().map(file).collect())
+    BUILT_IN.iter().map(file).collect()
 }
 
 /// They are read once, so that all are of one version, and what is put into the folder later is not served.

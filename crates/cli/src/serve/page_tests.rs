@@ -4,7 +4,7 @@ use std::fs;
 
 use tempfile::TempDir;
 
-use super::{built_in, load};
+use super::load;
 
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
@@ -48,16 +48,10 @@ fn other_folders_are_refused_with_the_way_out() {
 }
 
 #[test]
-fn a_program_without_a_page_says_how_to_get_one() {
-    let said = built_in(&[]).unwrap_err().to_string();
-    for words in
-        ["built without the page", "scripts/web", "--page target/web/site", "CORNICHE_PAGE"]
-    {
-        assert!(said.contains(words), "{said}");
+fn the_program_has_a_page_of_its_own() {
+    let page = load(None).unwrap();
+    for path in ["index.html", "corniche-map.js", "corniche_web_bg.wasm"] {
+        let file = page.iter().find(|file| file.path == path);
+        assert!(file.is_some_and(|file| !file.bytes.is_empty()), "{path}");
     }
-    let page = built_in(&[("index.html", b"page")]).unwrap();
-    assert_eq!(
-        (page.len(), &page[0].path[..], &page[0].bytes[..]),
-        (1, "index.html", &b"page"[..])
-    );
 }

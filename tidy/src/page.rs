@@ -1,0 +1,136 @@
+//! The page in the program (`crates/cli/page`), and whether it is made from the sources that are here.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt::Write as _,
+    fs,
+    path::Path,
+};
+
+use anyhow::{Context, Result};
+use sha2::{Digest, Sha256};
+use toml::{Table, Value};
+
+use crate::{files::files_in, source::is_test_file};
+
+/// What is known of the page that is kept, from the root.
+pub const PAGE: &str = "crates/cli/page.toml";
+
+/// The crates whose modules the page loads.
+const MODULES: [&str; 2] = ["corniche-web", "corniche-web-styles"];
+const PREFIX: &str = "corniche-";
+/// What makes the page from the crates.
+const SCRIPT: &str = "scripts/web";
+/// Folders of a crate that no page is made from.
+const NOT_SOURCES: [&str; 3] = ["tests", "benches", "examples"];
+
+/// The SHA-256, in hexadecimal digits, of all that the page is made from: the crates of its modules and those that they
+/// use, with the versions and settings of what comes from others, and the script.
+///
+/// # Errors
+/// When a file cannot be read or a manifest is no TOML.
+pub fn page_sources(root: &Path) -> Result<String> {
+    let workspace = read_toml(&root.join("Cargo.toml"))?;
+    let mut hash = Sha256::new();
+    let mut add = |name: &str, bytes: &[u8]| {
+        hash.update((name.len() as u64).to_le_bytes());
+        hash.update(name);
+        hash.update((bytes.len() as u64).to_le_bytes());
+        hash.update(bytes);
+    };
+    let used = used_crates(root)?;
+    for name in &used.own {
+        let folder = root.join("crates").join(name);
+        for file in files_in(&folder)? {
+            let inside = file.strip_prefix(&folder)?;
+            let is_other = |part: &std::ffi::OsStr| NOT_SOURCES.iter().any(|name| part == *name);
+            let is_text = inside.extension().is_some_and(|ending| ending == "md");
+            if !is_text && !is_test_file(inside) && !inside.iter().any(is_other) {
+                let bytes =
+                    fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
+                add(&format!("{name}/{}", inside.display()), &bytes);
+            }
+        }
+    }
+    for name in &used.others {
+        let settings = &workspace["workspace"]["dependencies"][name];
+        add(name, settings.to_string().as_bytes());
+    }
+    add("profile", workspace["profile"]["wasm"].to_string().as_bytes());
+    add("versions", locked_versions(root, &used.others)?.as_bytes());
+    add(SCRIPT, &fs::read(root.join(SCRIPT)).with_context(|| format!("cannot read {SCRIPT}"))?);
+    Ok(hash.finalize().iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
+}
+
+/// What the modules are made of.
+#[derive(Default)]
+struct UsedCrates {
+    /// Folders in `crates`.
+    own: BTreeSet<String>,
+    /// Names in `workspace.dependencies`.
+    others: BTreeSet<String>,
+}
+
+fn used_crates(root: &Path) -> Result<UsedCrates> {
+    let mut found = UsedCrates::default();
+    let mut open: Vec<String> = MODULES.map(str::to_owned).into();
+    while let Some(name) = open.pop() {
+        let Some(folder) = name.strip_prefix(PREFIX) else {
+            found.others.insert(name);
+            continue;
+        };
+        if found.own.insert(folder.to_owned()) {
+            let manifest = read_toml(&root.join("crates").join(folder).join("Cargo.toml"))?;
+            open.extend(dependencies(&manifest));
+        }
+    }
+    Ok(found)
+}
+
+/// The names of what a manifest needs, on any system, but for tests.
+fn dependencies(manifest: &Table) -> Vec<String> {
+    let targets = manifest.get("target").and_then(Value::as_table);
+    let tables =
+        targets.into_iter().flatten().filter_map(|(_, target)| target.as_table()).chain([manifest]);
+    let kinds =
+        tables.flat_map(|table| ["dependencies", "build-dependencies"].map(|kind| table.get(kind)));
+    let names = kinds.flatten().filter_map(Value::as_table).flat_map(Table::keys);
+    names.cloned().collect()
+}
+
+/// The names and versions of all packages that these names lead to, as the lock file holds them.
+fn locked_versions(root: &Path, names: &BTreeSet<String>) -> Result<String> {
+    let lock = read_toml(&root.join("Cargo.lock"))?;
+    let packages = lock["package"].as_array().context("Cargo.lock lists no packages")?;
+    let mut by_name: BTreeMap<&str, Vec<&Value>> = BTreeMap::new();
+    for package in packages {
+        let name = package["name"].as_str().context("a package without a name")?;
+        by_name.entry(name).or_default().push(package);
+    }
+    let mut open: Vec<&str> = names.iter().map(String::as_str).collect();
+    let mut found = BTreeSet::new();
+    while let Some(name) = open.pop() {
+        for package in by_name.get(name).into_iter().flatten() {
+            if found.insert(format!("{name} {}\n", package["version"])) {
+                let needed = package.get("dependencies").and_then(Value::as_array);
+                // `name` or `name version`.
+                open.extend(
+                    needed
+                        .into_iter()
+                        .flatten()
+                        .filter_map(|text| text.as_str()?.split_whitespace().next()),
+                );
+            }
+        }
+    }
+    Ok(found.into_iter().collect())
+}
+
+fn read_toml(path: &Path) -> Result<Table> {
+    let text =
+        fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    text.parse().with_context(|| format!("{} is no TOML", path.display()))
+}
