@@ -16,8 +16,7 @@ use std::{
 use anyhow::{Context as _, Result};
 use corniche_tidy::{
     BUDGET, Bytes, CrateFigures, Graph, crates_of, figures, over_budget, page_sources,
-    product_bytes,
-    read_budget, read_crate, root, sunk, uses,
+    product_bytes, read_budget, read_crate, root, sunk, uses,
 };
 
 /// How many of the longest functions and files are listed.

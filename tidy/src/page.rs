@@ -16,9 +16,8 @@ use crate::{files::files_in, source::is_test_file};
 /// What is known of the page that is kept, from the root.
 pub const PAGE: &str = "crates/cli/page.toml";
 
-/// The crates whose modules the page loads.
-const MODULES: [&str; 2] = ["corniche-web", "corniche-web-styles"];
-const PREFIX: &str = "corniche-";
+/// The folders of the crates whose modules the page loads.
+const MODULES: [&str; 2] = ["crates/web", "crates/web-styles"];
 /// What makes the page from the crates.
 const SCRIPT: &str = "scripts/web";
 /// Folders of a crate that no page is made from.
@@ -38,9 +37,10 @@ pub fn page_sources(root: &Path) -> Result<String> {
         hash.update((bytes.len() as u64).to_le_bytes());
         hash.update(bytes);
     };
-    let used = used_crates(root)?;
+    let known = &workspace["workspace"]["dependencies"];
+    let used = used_crates(root, known)?;
     for name in &used.own {
-        let folder = root.join("crates").join(name);
+        let folder = root.join(name);
         for file in files_in(&folder)? {
             let inside = file.strip_prefix(&folder)?;
             let is_other = |part: &std::ffi::OsStr| NOT_SOURCES.iter().any(|name| part == *name);
@@ -53,8 +53,7 @@ pub fn page_sources(root: &Path) -> Result<String> {
         }
     }
     for name in &used.others {
-        let settings = &workspace["workspace"]["dependencies"][name];
-        add(name, settings.to_string().as_bytes());
+        add(name, known[name].to_string().as_bytes());
     }
     add("profile", workspace["profile"]["wasm"].to_string().as_bytes());
     add("versions", locked_versions(root, &used.others)?.as_bytes());
@@ -68,23 +67,26 @@ pub fn page_sources(root: &Path) -> Result<String> {
 /// What the modules are made of.
 #[derive(Default)]
 struct UsedCrates {
-    /// Folders in `crates`.
+    /// Folders of the workspace.
     own: BTreeSet<String>,
     /// Names in `workspace.dependencies`.
     others: BTreeSet<String>,
 }
 
-fn used_crates(root: &Path) -> Result<UsedCrates> {
+fn used_crates(root: &Path, known: &Value) -> Result<UsedCrates> {
     let mut found = UsedCrates::default();
     let mut open: Vec<String> = MODULES.map(str::to_owned).into();
-    while let Some(name) = open.pop() {
-        let Some(folder) = name.strip_prefix(PREFIX) else {
-            found.others.insert(name);
-            continue;
-        };
-        if found.own.insert(folder.to_owned()) {
-            let manifest = read_toml(&root.join("crates").join(folder).join("Cargo.toml"))?;
-            open.extend(dependencies(&manifest));
+    while let Some(folder) = open.pop() {
+        let manifest = read_toml(&root.join(&folder).join("Cargo.toml"))?;
+        found.own.insert(folder);
+        for name in dependencies(&manifest) {
+            match known[&name].get("path").and_then(Value::as_str) {
+                Some(folder) if !found.own.contains(folder) => open.push(folder.to_owned()),
+                Some(_) => {}
+                None => {
+                    found.others.insert(name);
+                }
+            }
         }
     }
     Ok(found)
