@@ -31,7 +31,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     let package = packages::open(&args.from.package)?;
     if args.json {
         let tiles: Vec<String> = package.tile_ids()?.iter().map(ToString::to_string).collect();
-        let document = InfoDocument { manifest: package.manifest().into(), tiles };
+        let document = InfoDocument { manifest: package.manifest(), tiles };
         messages::answer_document(&document)?;
     } else {
         let size = package.bytes()?;

@@ -3,64 +3,22 @@
 use corniche_tileset::GrowthRow;
 use serde::Serialize;
 
+#[cfg(test)]
+use crate::documents::info_schema::RowDocument;
+
 /// What laying roads on the terrain costs.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct GrowthDocument {
     /// One for each level and class.
-    pub(crate) rows: Vec<RowDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<RowDocument>"))]
+    pub(crate) rows: Vec<GrowthRow>,
     /// One for each level.
     pub(crate) levels: Vec<LevelGrowthDocument>,
     /// All levels, against one copy of the source.
     pub(crate) all_levels: WholeGrowthDocument,
     /// What Vaaraniemi, Treib & Westermann 2011 report (section 7, "about"): times the size of the road data.
     pub(crate) paper: f64,
-}
-
-/// What one class costs on one level.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct RowDocument {
-    /// Level.
-    pub(crate) level: u8,
-    /// Functional road class.
-    pub(crate) class: u8,
-    /// Points of the source lines that lie in tiles with ground.
-    pub(crate) source_vertices: u64,
-    /// Points of the level's simplified lines that lie in tiles with ground.
-    pub(crate) simplified_vertices: u64,
-    /// Vertices of the clipped lines.
-    pub(crate) geo_vertices: u64,
-    /// Points of the plan lines for shadow volumes.
-    pub(crate) sv_vertices: u64,
-    /// Bytes of the source lines as plain f64 pairs.
-    pub(crate) source_bytes: u64,
-    /// Bytes of the simplified lines as plain f64 pairs.
-    pub(crate) simplified_bytes: u64,
-    /// Bytes of the clipped lines as plain f64 triples.
-    pub(crate) geo_raw_bytes: u64,
-    /// Bytes of the clipped lines as stored.
-    pub(crate) geo_stored_bytes: u64,
-    /// Bytes of the plan lines as stored.
-    pub(crate) sv_stored_bytes: u64,
-}
-
-impl From<&GrowthRow> for RowDocument {
-    fn from(row: &GrowthRow) -> Self {
-        Self {
-            level: row.level,
-            class: row.class,
-            source_vertices: row.source_vertices,
-            simplified_vertices: row.simplified_vertices,
-            geo_vertices: row.geo_vertices,
-            sv_vertices: row.sv_vertices,
-            source_bytes: row.source_bytes,
-            simplified_bytes: row.simplified_bytes,
-            geo_raw_bytes: row.geo_raw_bytes,
-            geo_stored_bytes: row.geo_stored_bytes,
-            sv_stored_bytes: row.sv_stored_bytes,
-        }
-    }
 }
 
 /// What a level costs, all classes. Ratios are null where there is nothing to divide by.
@@ -83,6 +41,15 @@ pub(crate) struct LevelGrowthDocument {
     pub(crate) geo_stored_bytes: u64,
     /// Bytes of the plan lines as stored.
     pub(crate) sv_stored_bytes: u64,
+    /// What it grew by.
+    #[serde(flatten)]
+    pub(crate) factors: Factors,
+}
+
+/// What a row, or a sum of rows, grew by. Ratios are null where there is nothing to divide by.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Factors {
     /// Clipped vertices over simplified ones.
     pub(crate) growth_over_simplified: Option<f64>,
     /// Clipped vertices over the source's.

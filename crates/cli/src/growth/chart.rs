@@ -98,7 +98,7 @@ pub(crate) fn comparison(packages: &[Compared<'_>]) -> anyhow::Result<String> {
     let points = |package: &Compared<'_>| -> Vec<(f64, f64)> {
         let levels = package.manifest.levels.iter();
         let point = |level: &corniche_tileset::LevelRecord| {
-            let growth = of_level(package.manifest, level.level).1.over_simplified?;
+            let growth = of_level(package.manifest, level.level).1.growth_over_simplified?;
             Some(((level.cell_m.shorter_m() / unit_m).log2(), growth))
         };
         levels.filter_map(point).collect()

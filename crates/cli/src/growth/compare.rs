@@ -265,9 +265,9 @@ fn wholes(packages: &[Compared<'_>], digits: Digits) -> Table {
             digits.count(all.source_vertices),
             digits.count(finest.geo_vertices),
             digits.count(all.geo_vertices),
-            factor(finest_factors.over_source),
-            factor(factors.over_source),
-            factor(factors.stored_bytes),
+            factor(finest_factors.growth_over_source),
+            factor(factors.growth_over_source),
+            factor(factors.stored_bytes_over_source),
         ]);
     }
     table
@@ -297,10 +297,10 @@ fn levels(packages: &[Compared<'_>], digits: Digits) -> Table {
                 digits.count(row.source_vertices),
                 digits.count(row.simplified_vertices),
                 digits.count(row.geo_vertices),
-                factor(factors.over_simplified),
-                factor(factors.over_source),
-                factor(factors.raw_bytes),
-                factor(factors.stored_bytes),
+                factor(factors.growth_over_simplified),
+                factor(factors.growth_over_source),
+                factor(factors.raw_bytes_over_source),
+                factor(factors.stored_bytes_over_source),
             ]);
         }
     }

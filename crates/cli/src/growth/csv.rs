@@ -2,8 +2,8 @@
 
 use corniche_tileset::{GrowthRow, Manifest};
 
-use super::factors::{Factors, factors, of_level, whole};
-use crate::defects::quoted;
+use super::factors::{factors, of_level, whole};
+use crate::{defects::quoted, documents::growth::Factors};
 
 const HEADINGS: &str = "level,class,source_vertices,simplified_vertices,geo_vertices,sv_vertices,source_bytes,simplified_bytes,\
                         geo_raw_bytes,geo_stored_bytes,sv_stored_bytes,growth_over_simplified,growth_over_source,\
@@ -53,12 +53,12 @@ fn lines(manifest: &Manifest) -> Vec<String> {
 fn line(level: &str, class: &str, row: &GrowthRow, factors: &Factors) -> String {
     let counts = row.counts().map(|count| count.to_string());
     let ratios = [
-        factors.over_simplified,
-        factors.over_source,
-        factors.raw_bytes,
-        factors.stored_bytes,
-        factors.raw_over_simplified,
-        factors.stored_over_simplified,
+        factors.growth_over_simplified,
+        factors.growth_over_source,
+        factors.raw_bytes_over_source,
+        factors.stored_bytes_over_source,
+        factors.raw_bytes_over_simplified,
+        factors.stored_bytes_over_simplified,
     ];
     let ratios = ratios.map(|ratio| ratio.map_or_else(String::new, |ratio| ratio.to_string()));
     let cells = [level, class].into_iter().chain(counts.iter().chain(&ratios).map(String::as_str));
