@@ -29,7 +29,7 @@ use crate::{
     packages,
     progress::Progress,
     recorded,
-    table::{Digits, bytes, length},
+    table::{bytes, length, noted},
 };
 
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
@@ -59,14 +59,13 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
             summary.unjoined
         ));
     }
-    let count = |number| Digits::of_notes().count(number);
     let what = format!(
         "{} areas of level {}, {:.3} km², {} polygons, {} points",
-        count(summary.areas),
+        noted(summary.areas),
         summary.level,
         summary.area_m2 / 1e6,
-        count(summary.polygons),
-        count(summary.points),
+        noted(summary.polygons),
+        noted(summary.points),
     );
     note_plan(plan, &request, &what, (package.manifest(), size));
     Ok(ExitCode::Done)
@@ -82,14 +81,13 @@ fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
         export_lines(&package, (layer, names.as_ref()), &request, path, progress)
     };
     let (summary, size) = write(&plan.file, name, place.name(), export)?;
-    let count = |number| Digits::of_notes().count(number);
     let what = format!(
         "{} ways of level {}, {}, {} lines, {} points",
-        count(summary.ways),
+        noted(summary.ways),
         summary.level,
         length((summary.length_m * 1e6).round() as u64),
-        count(summary.lines),
-        count(summary.points),
+        noted(summary.lines),
+        noted(summary.points),
     );
     note_plan(plan, &request, &what, (package.manifest(), size));
     Ok(ExitCode::Done)

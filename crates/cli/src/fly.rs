@@ -21,7 +21,7 @@ use image::RgbaImage;
 
 use self::{measured_run::MeasuredRun, outputs::Outputs};
 use crate::{
-    args::{FlyArgs, Lod, Roads},
+    args::{FlyArgs, Roads},
     exit::ExitCode,
     failure::Failure,
     interrupt, messages, overlays, packages, presets,
@@ -84,17 +84,13 @@ fn options(
     args: &FlyArgs,
     flight: &Flight,
     style: &Style,
-    lod: Lod,
+    detail: Detail,
     roads: Roads,
 ) -> Result<ReplayOptions, Failure> {
     Ok(ReplayOptions {
         size_px: args.drawing.size,
         roads: args.look.road_options(roads),
-        detail: match lod {
-            Lod::Full => Detail::Full,
-            Lod::Culled => Detail::Culled,
-            Lod::Adaptive => Detail::Adaptive,
-        },
+        detail,
         screen_space_error_px: args.drawing.ground.screen_space_error,
         cell_px: args.drawing.ground.cell_px,
         exaggeration: args.drawing.ground.exaggeration,
@@ -194,7 +190,7 @@ impl Plan<'_> {
         &self,
         gpu: &Gpu,
         watcher: Option<&Watcher<'_>>,
-        lod: Lod,
+        lod: Detail,
         roads: Roads,
     ) -> Result<MeasuredRun, Failure> {
         let options = options(self.args, self.flight, self.style, lod, roads)?;
@@ -206,20 +202,19 @@ impl Plan<'_> {
             is_gone || interrupt::is_noted()
         };
         let mut replay = Replay::new(gpu, &package, self.flight, &options, &is_stopped)?;
+        let mut run = MeasuredRun { lod, roads, frames: Vec::new() };
         let Lifted { frames, most_m } = replay.lifted();
         if frames > 0 {
             messages::note(&format!(
-                "note: {}, roads {}: in {frames} frames the eye was lifted off the ground, by up to {most_m:.1} m",
-                lod.word(),
-                roads.word()
+                "note: {}: in {frames} frames the eye was lifted off the ground, by up to {most_m:.1} m",
+                run.name()
             ));
         }
-        let mut run = MeasuredRun { lod, roads, frames: Vec::new() };
         messages::note(&format!("flying {}", run.name()));
         let progress = Progress::new();
         progress.begin(Stage::Fly, Some(options.frames.into()));
         while let Some(record) = replay.next_frame()? {
-            let name = format!("{}-{}-{:05}.png", lod.word(), roads.word(), record.frame);
+            let name = format!("{}-{:05}.png", run.words().join("-"), record.frame);
             self.outputs.add_picture(&name, &replay)?;
             if let Some(watcher) = watcher {
                 watcher.show(&replay)?;

@@ -70,7 +70,7 @@ fn main() -> process::ExitCode {
         quiet_libraries::begin();
     }
     messages::begin(arguments.voice());
-    let _span = tracing::info_span!("corniche", command = arguments.command.name()).entered();
+    let _span = tracing::info_span!("corniche", command = arguments.name).entered();
     tracing::debug!(
         version = env!("CARGO_PKG_VERSION"),
         libraries = version::libraries(),

@@ -9,7 +9,6 @@ use corniche_viewer::tiles::{LayerLine, Overlays};
 
 use crate::{
     args::{LookArgs, OverlayArg},
-    exit::ExitCode,
     failure::Failure,
     messages,
 };
@@ -66,10 +65,4 @@ pub(crate) fn names(files: &[OverlayArg]) -> Vec<String> {
         file.path().file_name().unwrap_or_default().to_string_lossy().into_owned()
     };
     files.iter().map(name).collect()
-}
-
-impl From<OverlayError> for Failure {
-    fn from(error: OverlayError) -> Self {
-        Self::new(ExitCode::Unusable, error)
-    }
 }

@@ -131,6 +131,14 @@ impl Progress {
         Self::in_manner(Manner::of(messages::voice()))
     }
 
+    /// Does work and tells of it. What runs at its end ends with it.
+    pub(crate) fn of<R>(work: impl FnOnce(&Self) -> R) -> R {
+        let progress = Self::new();
+        let done = work(&progress);
+        progress.finish();
+        done
+    }
+
     /// Tells of a build, and lists its defects if a list is asked for; it must be none of `others`.
     pub(crate) fn of_build(
         list: Option<&Path>,

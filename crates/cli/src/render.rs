@@ -19,7 +19,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     interrupt, messages, overlays, packages, presets, styles,
-    table::Digits,
+    table::noted,
 };
 
 pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
@@ -143,7 +143,7 @@ fn incomplete_areas(manifest: &Manifest, style: &Style) -> Option<String> {
         format!(
             "note: areas that are not drawn because the extract lacks parts of their outlines: {}; they may lie anywhere, and corniche build --defects lists \
              them",
-            Digits::of_notes().count(objects)
+            noted(objects)
         )
     })
 }

@@ -28,7 +28,7 @@ use crate::{
 pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
     let package = packages::open(&args.from.package)?;
     let payload = match (args.id, args.at) {
-        (Some(id), _) => payload(&package, id)?.ok_or_else(|| no_tile(args, id))?,
+        (Some(id), _) => package.payload(id, Sections::ALL)?.ok_or_else(|| no_tile(args, id))?,
         (None, Some(at)) => payload_at(args, &package, at)?,
         // The command line has one of them.
         (None, None) => return Err(Failure::unusable("name a tile: Z/X/Y, or --at LON,LAT")),
@@ -41,10 +41,6 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
         messages::answer(&to_text(&payload, &layers, Digits::of_answers()))?;
     }
     Ok(ExitCode::Done)
-}
-
-fn payload(package: &FilePackage, id: TileId) -> Result<Option<TilePayload>, Failure> {
-    package.payload(id, Sections::ALL).map_err(|error| Failure::new(ExitCode::Unusable, error))
 }
 
 /// What a tile has of the layers that are read by themselves.
@@ -93,7 +89,7 @@ fn payload_at(
         if !lies_in_data(manifest, point) {
             break;
         }
-        let Some(payload) = payload(package, id)? else { continue };
+        let Some(payload) = package.payload(id, Sections::ALL)? else { continue };
         if args.level.is_none() && level < finest {
             messages::note(&format!(
                 "there is no tile of level {finest} at this place; tile {id} is the finest one"

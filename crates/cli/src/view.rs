@@ -5,12 +5,11 @@ use std::{fs, io, path::Path, sync::Arc};
 use corniche_styles::style_preset_names;
 use corniche_viewer::{RoadMethod, gpu::GpuError, tiles::MapPackage as _};
 use corniche_window::{
-    BeginTrace, Closed, End, Inertia, NamedStyle, Reload, WindowError, WindowRequest,
-    run as open_window,
+    BeginTrace, Closed, End, NamedStyle, Reload, WindowError, WindowRequest, run as open_window,
 };
 
 use crate::{
-    args::{Motion, OverlayArg, Roads, ViewArgs, with_overlays},
+    args::{OverlayArg, Roads, ViewArgs, with_overlays},
     drawing::Drawing,
     exit::ExitCode,
     failure::Failure,
@@ -60,9 +59,9 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         ),
         styles,
         photo: args.look.photo,
-        areas: args.look.areas.in_window(),
+        areas: args.look.areas,
         reload: reload(chosen, &args.look.overlay),
-        boundaries: args.look.boundaries.in_window(),
+        boundaries: args.look.boundaries,
         overlays: overlays::names(&args.look.overlay),
         drawn_lines: drawing.lines,
         save_drawing: drawing.save,
@@ -71,10 +70,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         exaggeration: args.ground.exaggeration,
         samples_per_side: args.supersampling,
         budget: args.gpu.budget(),
-        inertia: match args.motion {
-            Motion::Soft => Inertia::On,
-            Motion::Prompt => Inertia::Off,
-        },
+        inertia: args.motion,
         folder: args.folder.clone(),
         trace,
         is_stopped: Box::new(interrupt::is_noted),
@@ -152,20 +148,4 @@ fn reload(name_or_path: &str, overlays: &[OverlayArg]) -> Option<Reload> {
         let style = style.map(|style| with_overlays(&overlays, style));
         Some(style.map_err(|failure| failure.to_string()))
     }))
-}
-
-impl From<WindowError> for Failure {
-    fn from(error: WindowError) -> Self {
-        let code = match &error {
-            WindowError::Load(_)
-            | WindowError::NoGround { .. }
-            | WindowError::OverBudget { .. }
-            | WindowError::OffGround(_)
-            | WindowError::Range(_)
-            | WindowError::NoStyle
-            | WindowError::Trace { .. } => ExitCode::Unusable,
-            _ => ExitCode::Failed,
-        };
-        Self::new(code, error)
-    }
 }

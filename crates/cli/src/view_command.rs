@@ -9,7 +9,7 @@ use corniche_window::{CommandOf, ShownView, Visibility};
 
 use corniche_styles::Rgb;
 
-use crate::args::{OverlayArg, Roads};
+use crate::args::{OUTLINES, OverlayArg, Roads, WIDTH_GROWTHS, word_of};
 
 /// The file that the command names.
 const PICTURE: &str = "view.png";
@@ -114,16 +114,11 @@ fn look(roads: RoadOptions) -> Vec<(&'static str, &'static str)> {
     if roads.caps == Caps::None && roads.method != RoadMethod::None {
         given.push(("--caps", "none"));
     }
-    match roads.width_growth {
-        WidthGrowth::None => given.push(("--width-growth", "none")),
-        WidthGrowth::Constant => given.push(("--width-growth", "constant")),
-        WidthGrowth::ByDistance => {}
+    if roads.width_growth != WidthGrowth::ByDistance {
+        given.push(("--width-growth", word_of(&WIDTH_GROWTHS, &roads.width_growth)));
     }
-    match roads.outline {
-        Outline::None => given.push(("--outline", "none")),
-        Outline::Kernel3 => given.push(("--outline", "3")),
-        Outline::Kernel5 => given.push(("--outline", "5")),
-        Outline::OfStyle => {}
+    if roads.outline != Outline::OfStyle {
+        given.push(("--outline", word_of(&OUTLINES, &roads.outline)));
     }
     // The option is refused where no shadow volume has caps.
     let has_caps = roads.method == RoadMethod::ShadowVolumes && roads.caps == Caps::Round;

@@ -6,14 +6,15 @@ use clap::{ArgGroup, Args, ValueHint};
 use corniche_remote::PackagePlace;
 
 use super::{
-    ReportArgs,
     shared::ClassesArg,
     values::{package_among, package_place},
+    voice::json_progress,
 };
 use crate::failure::Failure;
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     group = ArgGroup::new("target").args(["photo", "slope"]).required(true),
     override_usage = "corniche match [OPTIONS] <--photo <FILE>...|--slope> <PACKAGE>",
     group = ArgGroup::new("written").args(["csv", "svg"]).multiple(true),
@@ -49,8 +50,6 @@ pub(crate) struct MatchArgs {
     /// Replace files that exist, once the new ones are complete
     #[arg(short = 'O', long, requires = "written")]
     pub(crate) overwrite: bool,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 impl MatchArgs {

@@ -8,9 +8,9 @@ use corniche_remote::PackagePlace;
 use corniche_verify::CheckId;
 
 use super::{
-    ReportArgs,
     shared::{PackageArg, ThreadsArg},
     values::{package_among, package_place, parse_position},
+    voice::json_progress,
 };
 use crate::failure::Failure;
 
@@ -37,7 +37,7 @@ pub(crate) struct InfoArgs {
 }
 
 #[derive(Debug, Args)]
-#[command(after_long_help = checks(), override_usage = "corniche verify [OPTIONS] <PACKAGE>")]
+#[command(arg = json_progress(), after_long_help = checks(), override_usage = "corniche verify [OPTIONS] <PACKAGE>")]
 pub(crate) struct VerifyArgs {
     /// The package: a file, or an address on a web server (https://…)
     #[arg(required_unless_present_any = ["dem", "photo", "osm"], value_parser = package_place(), value_hint = ValueHint::AnyPath)]
@@ -65,8 +65,6 @@ pub(crate) struct VerifyArgs {
     /// Print JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 impl VerifyArgs {

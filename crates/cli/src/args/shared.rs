@@ -8,7 +8,10 @@ use corniche_presets::{BoundsChoice, Classes, parse_bytes};
 use corniche_remote::PackagePlace;
 use corniche_viewer::stream::StreamBudget;
 
-use super::values::{package_among, package_place};
+use super::{
+    values::{package_among, package_place},
+    voice::json_progress,
+};
 use crate::failure::Failure;
 
 // The package that is read.
@@ -61,6 +64,7 @@ pub(crate) struct ExtractArgs {
 
 // The file that an export writes.
 #[derive(Debug, Args)]
+#[command(arg = json_progress())]
 pub(crate) struct FileArgs {
     /// The file to write; its ending is its format: .gpkg, .fgb, .geojson or .csv
     #[arg(short, long, value_name = "FILE")]
@@ -72,6 +76,7 @@ pub(crate) struct FileArgs {
 
 // The folder that an export writes.
 #[derive(Debug, Args)]
+#[command(arg = json_progress())]
 pub(crate) struct FolderArgs {
     /// The folder to write: tileset.json and what it names
     #[arg(short, long, value_name = "FOLDER")]

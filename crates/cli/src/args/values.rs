@@ -14,9 +14,20 @@ use corniche_remote::PackagePlace;
 
 use crate::{failure::Failure, names::is_package_name};
 
-/// One of some values by its word; behind it stands what its help says, if it says anything.
+/// The values of an option: the word of each, what its help says of it, if it says anything, and what it stands for.
+pub(crate) type Words<T, const N: usize> = [(&'static str, &'static str, T); N];
+
+/// The word of a value.
+pub(crate) fn word_of<T: PartialEq, const N: usize>(
+    values: &Words<T, N>,
+    value: &T,
+) -> &'static str {
+    values.iter().find(|(_, _, own)| own == value).map_or("", |(word, ..)| word)
+}
+
+/// One of some values by its word.
 pub(crate) fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
-    values: [(&'static str, &'static str, T); N],
+    values: Words<T, N>,
 ) -> impl TypedValueParser<Value = T> {
     let words = values.map(|(word, help, _)| {
         let value = PossibleValue::new(word);

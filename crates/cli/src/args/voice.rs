@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use clap::{ArgAction, Args, ValueEnum};
+use clap::{Arg, ArgAction, Args, ValueEnum};
 
 /// How messages are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -61,6 +61,19 @@ pub(crate) struct VoiceArgs {
     /// How messages are written on standard error
     #[arg(long, global = true, value_enum, value_name = "FORMAT", default_value_t)]
     pub(crate) log_format: LogFormat,
+}
+
+/// The id of `--json-progress`.
+pub(crate) const JSON_PROGRESS: &str = "json_progress";
+
+/// The option of commands that tell progress.
+pub(crate) fn json_progress() -> Arg {
+    Arg::new(JSON_PROGRESS)
+        .long("json-progress")
+        .help("Print progress, warnings and the end on standard error, as one JSON object per line")
+        .help_heading("Progress")
+        .action(ArgAction::SetTrue)
+        .conflicts_with("quiet")
 }
 
 impl VoiceArgs {

@@ -14,7 +14,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages, recorded,
-    table::{Digits, bytes, length, up_to},
+    table::{bytes, length, noted, up_to},
 };
 
 pub(crate) fn run(args: &ExportEdgesArgs) -> Result<ExitCode, Failure> {
@@ -59,15 +59,14 @@ fn to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::of_notes().count(number);
     let some = |number, what: &str| match number {
         0 => String::new(),
-        _ => format!("; {} {what}", count(number)),
+        _ => format!("; {} {what}", noted(number)),
     };
     format!(
         "{}: {} edges, {}, {}{}{}\n{}\nheights are within {} m of the DEM, over whole lines",
         in_line(&args.vector.file.output.to_string_lossy()),
-        count(summary.edges),
+        noted(summary.edges),
         length((summary.length_m * 1e6).round() as u64),
         bytes(size),
         some(summary.without_ground, "left out, without ground"),

@@ -16,7 +16,7 @@ use crate::{
     output::{existing_of, named::NamedOutput},
     packages, recorded,
     settings::threads,
-    table::{Digits, bytes},
+    table::{bytes, noted},
 };
 
 /// Endings of names that programs take for a `GeoTIFF`.
@@ -65,23 +65,22 @@ fn to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::of_notes().count(number);
     let error = summary.sample_error.map_or_else(String::new, |error| {
         let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = error;
         let points = if manifest.nodes_are_samples { "samples" } else { "nodes, which lie between samples" };
         format!(
             "\nTIN minus DEM: max {max_m:.3} m, RMS {rms_m:.3} m, p99 {p99_m:.3} m at {} {points}; {} have no ground",
-            count(on_tin),
-            count(off_tin)
+            noted(on_tin),
+            noted(off_tin)
         )
     });
     format!(
         "{}: level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}{}",
         in_line(&args.file.output.to_string_lossy()),
         summary.level,
-        count(summary.columns),
-        count(summary.rows),
-        count(summary.covered),
+        noted(summary.columns),
+        noted(summary.rows),
+        noted(summary.covered),
         summary.pixels,
         bytes(size),
         summary.error_bound_m,

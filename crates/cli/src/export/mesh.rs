@@ -19,7 +19,7 @@ use crate::{
     packages,
     progress::Progress,
     styles,
-    table::{Digits, bytes},
+    table::{bytes, noted},
 };
 
 pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
@@ -54,9 +54,8 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
     let output =
         NamedOutput::create(&args.file.output, existing, name, &[args.from.package.name()])?;
     let materials = materials.map(|path| Materials::begin(path, existing, args)).transpose()?;
-    let progress = Progress::new();
-    let exported = export_mesh(&package, &request, &output.path(), &progress);
-    progress.finish();
+    let exported =
+        Progress::of(|progress| export_mesh(&package, &request, &output.path(), progress));
     let summary = exported.map_err(|error| Failure::from(error).about_target(&args.file.output))?;
     let placed = materials
         .map(|materials| materials.place(&request.materials(package.manifest())))
@@ -106,18 +105,17 @@ fn file_name(path: &Path) -> String {
 }
 
 fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, size: u64) -> String {
-    let count = |number| Digits::of_notes().count(number);
     let [x, y] = summary.origin;
     let roads = match args.roads {
-        ModelRoads::Surfaces => format!("{} of them of roads", count(summary.road_triangles)),
-        ModelRoads::Lines | ModelRoads::None => format!("{} lines of roads", count(summary.lines)),
+        ModelRoads::Surfaces => format!("{} of them of roads", noted(summary.road_triangles)),
+        ModelRoads::Lines | ModelRoads::None => format!("{} lines of roads", noted(summary.lines)),
     };
     format!(
         "{}: level {}, {} tiles, {} triangles, {roads}, {}\norigin: {x}, {y} in {}\nheights: as in the package, metres (datum: {}){}",
         in_line(&args.file.output.to_string_lossy()),
         summary.level,
-        count(summary.tiles),
-        count(summary.triangles),
+        noted(summary.tiles),
+        noted(summary.triangles),
         bytes(size),
         in_line(&manifest.crs),
         in_line(&manifest.vertical.datum),

@@ -19,7 +19,7 @@ use crate::{
     packages,
     progress::Progress,
     settings,
-    table::{Digits, bytes},
+    table::{bytes, noted},
 };
 
 /// Half of the block that most file systems have.
@@ -32,10 +32,7 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
         max_level: args.max_level,
         max_files: args.max_files,
         bounds: args.within.bounds,
-        coordinates: match args.heights {
-            None => Coordinates::Wgs84,
-            Some(_) => Coordinates::Wgs84WithPackageHeights,
-        },
+        coordinates: args.heights.unwrap_or(Coordinates::Wgs84),
         availability: args.availability,
         gzip: args.compress,
         threads: settings::threads(args.cpu.threads),
@@ -46,11 +43,11 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
         .map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
     messages::note(&plan_text(&plan));
     refuse_full_disk(&plan, output.path())?;
-    let progress = Progress::new();
-    let effort = plan.levels.iter().rev().map(|level| (level.tiles, level.effort)).collect();
-    progress.expect_efforts(effort);
-    let exported = export_quantized_mesh(&package, (&request, plan), output.path(), &progress);
-    progress.finish();
+    let exported = Progress::of(|progress| {
+        let effort = plan.levels.iter().rev().map(|level| (level.tiles, level.effort));
+        progress.expect_efforts(effort.collect());
+        export_quantized_mesh(&package, (&request, plan), output.path(), progress)
+    });
     let summary =
         exported.map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
     let size = output.place("quantized-mesh")?;
@@ -63,7 +60,7 @@ fn plan_text(plan: &QuantizedMeshPlan) -> String {
     format!(
         "terrain      levels 0 to {}: at most {} files, about {} (an estimate from some tiles); --max-level chooses another finest level",
         plan.finest(),
-        Digits::of_notes().count(plan.files()),
+        noted(plan.files()),
         bytes(plan.bytes),
     )
 }
@@ -76,7 +73,7 @@ fn refuse_full_disk(plan: &QuantizedMeshPlan, folder: &Path) -> Result<(), Failu
         Ok(free) if free < needed => Err(Failure::unusable(format!(
             "about {} are needed for {} files, and {} are free there; choose a coarser level with --max-level, or another folder",
             bytes(needed),
-            Digits::of_notes().count(plan.files()),
+            noted(plan.files()),
             bytes(free),
         ))),
         _ => Ok(()),
@@ -89,7 +86,6 @@ fn to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::of_notes().count(number);
     let level = |level: &QuantizedMeshLevel| {
         let deviation = if level.places == 0 {
             "not measured: no place with ground is on its raster".to_owned()
@@ -98,14 +94,14 @@ fn to_text(
                 "{:.3} m from the package at most ({:.3} m rms, {} places)",
                 level.deviation_m,
                 level.deviation_rms_m,
-                count(level.places),
+                noted(level.places),
             )
         };
         format!(
             "  level {}: {} tiles, {} triangles, {}, sampled {} × {}; assumed error {:.3} m, {deviation}\n",
             level.level,
-            count(level.tiles),
-            count(level.triangles),
+            noted(level.tiles),
+            noted(level.triangles),
             bytes(level.bytes),
             level.cells,
             level.cells,
@@ -116,7 +112,7 @@ fn to_text(
     format!(
         "{}: {} tiles, {}\n{}heights: {}{}",
         in_line(&args.folder.output.to_string_lossy()),
-        count(tiles),
+        noted(tiles),
         bytes(size),
         summary.levels.iter().map(level).collect::<String>(),
         in_line(&summary.heights),

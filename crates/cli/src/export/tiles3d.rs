@@ -14,7 +14,7 @@ use crate::{
     packages,
     progress::Progress,
     settings, styles,
-    table::{Digits, bytes},
+    table::{bytes, noted},
 };
 
 pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
@@ -29,17 +29,13 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
         relief: args.relief,
         skirts: args.skirts,
         compress: args.compress,
-        coordinates: match args.heights {
-            None => Coordinates::Wgs84,
-            Some(_) => Coordinates::Wgs84WithPackageHeights,
-        },
+        coordinates: args.heights.unwrap_or(Coordinates::Wgs84),
         threads: settings::threads(args.cpu.threads),
     };
     let existing = existing_of(args.folder.overwrite);
     let output = FolderOutput::create(&args.folder.output, existing, &[args.from.package.name()])?;
-    let progress = Progress::new();
-    let exported = export_tiles3d(&package, &request, output.path(), &progress);
-    progress.finish();
+    let exported =
+        Progress::of(|progress| export_tiles3d(&package, &request, output.path(), progress));
     let summary =
         exported.map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
     let size = output.place("3D Tiles")?;
@@ -53,15 +49,14 @@ fn to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::of_notes().count(number);
     let level = |level: &Tiles3dLevel| {
         format!(
             "  level {}: {} tiles, {} triangles ({} in the package), {} of roads, {}, error {:.3} m, {:.1} ms of cutting a tile\n",
             level.level,
-            count(level.tiles),
-            count(level.triangles),
-            count(level.package_triangles),
-            count(level.road_triangles),
+            noted(level.tiles),
+            noted(level.triangles),
+            noted(level.package_triangles),
+            noted(level.road_triangles),
             bytes(level.bytes),
             level.error_m,
             level.cut_s * 1e3 / level.tiles.max(1) as f64,
@@ -71,9 +66,9 @@ fn to_text(
     format!(
         "{}: {} tiles, {}, {} tileset documents\n{}heights: {}{}",
         in_line(&args.folder.output.to_string_lossy()),
-        count(total(|level| level.tiles)),
+        noted(total(|level| level.tiles)),
         bytes(size),
-        count(summary.documents),
+        noted(summary.documents),
         summary.levels.iter().map(level).collect::<String>(),
         in_line(&summary.heights),
         credits_line(manifest),

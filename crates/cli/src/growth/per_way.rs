@@ -28,14 +28,13 @@ pub(crate) fn fill(
     output.write_all(headings(manifest).as_bytes()).map_err(cannot)?;
     let mut sums = Sums::new(manifest);
     let mut ways = 0_u64;
-    let progress = Progress::new();
-    let told = growth_by_way(package, folder_of(path), MEMORY_BYTES, &progress, |way| {
-        ways += 1;
-        sums.add(way);
-        output.write_all(line(way).as_bytes()).map_err(cannot)
-    });
-    progress.finish();
-    told?;
+    Progress::of(|progress| {
+        growth_by_way(package, folder_of(path), MEMORY_BYTES, progress, |way| {
+            ways += 1;
+            sums.add(way);
+            output.write_all(line(way).as_bytes()).map_err(cannot)
+        })
+    })?;
     sums.fit(manifest, package.path())?;
     let mut off_ground = 0;
     for (class, points) in sums.left(manifest) {
