@@ -157,12 +157,12 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         Command::Merge(args) => args.planned.files().unwrap(),
         Command::Export(args) => match &args.what {
             Export::GeoTiff(args) => measured(&args.from, &[]),
-            Export::Roads(args) => measured(&args.from, &args.extract.osm),
+            Export::Roads(args) => measured(&args.vector.from, &args.vector.extract.osm),
             Export::Boundaries(args) => {
                 let (package, osm) = args.files().unwrap();
                 (path_of(package), osm)
             }
-            Export::Edges(args) => measured(&args.from, &args.extract.osm),
+            Export::Edges(args) => measured(&args.vector.from, &args.vector.extract.osm),
             what => panic!("{what:?} has no files to tell apart"),
         },
         Command::Match(args) => {

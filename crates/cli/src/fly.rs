@@ -124,14 +124,6 @@ struct Watcher<'a> {
     is_gone: &'a AtomicBool,
 }
 
-impl Watcher<'_> {
-    fn show(&self, replay: &Replay<'_>) -> Result<(), Failure> {
-        // Sending fails only when the window is closed or lost; `is_gone` then ends the flight or lets it go on.
-        let _ = self.window.send(replay.picture()?);
-        Ok(())
-    }
-}
-
 impl Plan<'_> {
     /// Flies in a thread of its own, because on most systems a window must belong to the program's first thread, which is this
     /// one. Without a display the flight fails; if the window is lost on the way, the flight goes on without it.
@@ -217,7 +209,8 @@ impl Plan<'_> {
             let name = format!("{}-{:05}.png", run.words().join("-"), record.frame);
             self.outputs.add_picture(&name, &replay)?;
             if let Some(watcher) = watcher {
-                watcher.show(&replay)?;
+                // It fails only when the window is closed or lost; `is_gone` then ends the flight or lets it go on.
+                let _ = watcher.window.send(replay.picture()?);
             }
             run.frames.push(record);
             progress.advance(Stage::Fly, 1);

@@ -242,8 +242,7 @@ fn photos(manifest: &Manifest, digits: Digits) -> Table {
     let finest = manifest.frame.max_level();
     for level in &manifest.photos {
         let cell = manifest.frame.level_cell(level.level);
-        let levels = manifest.settings.photo.map_or(0, |photo| photo.levels);
-        let finer = if level.level == finest { levels } else { levels.min(1) };
+        let finer = manifest.settings.photo.map_or(0, |of| of.levels_on(level.level, finest));
         let scale = f64::from(1_u32 << finer);
         let texel = Cell { east_m: cell.east_m / scale, north_m: cell.north_m / scale };
         let tile_km2 = cell.east_m * cell.north_m * 65_536.0 / manifest.point_scale.powi(2) / 1e6;

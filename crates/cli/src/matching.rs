@@ -25,7 +25,7 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
     let manifest = package.manifest();
     let photos = corniche_spec::inputs::photo_names(&photos)?;
     let inputs: Vec<&Path> = photos.iter().map(AsRef::as_ref).chain([place.name()]).collect();
-    let list = ("--csv", args.csv.as_deref());
+    let list = [("--csv", args.csv.as_deref())];
     // Both places are looked at before any work is done.
     let files =
         ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing_of(args.overwrite))?;
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
         compare(&Target::Photos(&opened, &grid))?
     };
     files.write(
-        |output| output.fill(report::to_csv(&report).as_bytes()),
+        |_, output| output.fill(report::to_csv(&report).as_bytes()),
         || Ok(map::to_svg(&report, manifest)),
     )?;
     let text = report::to_text(&report, manifest, Digits::of_answers());

@@ -139,34 +139,10 @@ fn in_degrees(bounds: BoundsChoice, osm: &[PathBuf]) -> Result<BoundsChoice, Fai
     }
 }
 
-/// An option that may be left out.
-trait Given {
-    /// What it has if it is given.
-    type Value;
-
-    fn given(self) -> Option<Self::Value>;
-}
-
-impl<T> Given for Option<T> {
-    type Value = T;
-
-    fn given(self) -> Self {
-        self
-    }
-}
-
-impl<T> Given for Vec<T> {
-    type Value = Self;
-
-    fn given(self) -> Option<Self> {
-        (!self.is_empty()).then_some(self)
-    }
-}
-
 /// Puts an option, if it is given, in its place in the checked settings.
 macro_rules! give {
     (($options:ident to $settings:ident) $name:ident $key:ident [$($path:tt)+] $usual:tt) => {
-        if let Some(value) = $options.$name.given() {
+        if let Some(value) = $options.$name {
             $settings.$($path)+ = value.into();
         }
     };

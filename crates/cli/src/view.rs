@@ -29,7 +29,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
     }
     let roads = args.look.roads(&[args.roads.unwrap_or(Roads::DEFAULT)])?[0];
     let own = [Some(args.from.package.name()), file_of(chosen)].into_iter().flatten();
-    let used: Vec<&Path> = own.chain(args.look.overlay.iter().map(OverlayArg::path)).collect();
+    let used: Vec<&Path> = own.chain(args.look.overlay.iter().map(|file| &*file.path)).collect();
     let trace = args.trace.as_deref().map(|path| begin_trace(path, &used)).transpose()?;
     if args.folder.exists() && !args.folder.is_dir() {
         return Err(Failure::unusable(format!(

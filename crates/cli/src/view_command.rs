@@ -82,9 +82,9 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
             continue;
         }
         // Without the files before it, it would be drawn in their colour.
-        let color = shown.overlay_colors.get(number).filter(|_| !overlay.has_color());
+        let color = shown.overlay_colors.get(number).filter(|_| overlay.color.is_none());
         let color = color.map(|color| format!(",color={}", hex(*color))).unwrap_or_default();
-        option("--overlay", format!("{}{color}", overlay.text()));
+        option("--overlay", format!("{}{color}", overlay.text));
     }
     for (name, value) in look(shown.roads) {
         option(name, value.to_owned());

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use corniche_presets::{Words, one_of};
 use corniche_viewer::Detail;
 
 use super::{
@@ -10,7 +11,7 @@ use super::{
     ground::GroundArgs,
     look::{COMPARING, LookArgs, ROADS, Roads},
     shared::{GpuArgs, PackageArg},
-    values::{Words, one_of, parse_size, parse_title},
+    values::{parse_size, parse_title},
 };
 
 #[derive(Debug, Args)]

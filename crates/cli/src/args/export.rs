@@ -7,6 +7,7 @@ use corniche_areas::{AreaClass, ClassedLayer, LineClass};
 use corniche_export::{
     Availability, Coordinates, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
 };
+use corniche_presets::{Words, one_of};
 use corniche_remote::PackagePlace;
 
 use super::{
@@ -14,7 +15,7 @@ use super::{
         BoundsArg, ClassesArg, DatumArg, ExtractArgs, FileArgs, FolderArgs, LevelArg, PackageArg,
         RecordedArgs, RoadArg, ThreadsArg,
     },
-    values::{Words, one_of, package_among, package_place},
+    values::{package_among, package_place},
 };
 use crate::failure::Failure;
 
@@ -56,10 +57,6 @@ pub(crate) enum Export {
 )]
 pub(crate) struct ExportRoadsArgs {
     #[command(flatten)]
-    pub(crate) from: RecordedArgs,
-    #[command(flatten)]
-    pub(crate) extract: ExtractArgs,
-    #[command(flatten)]
     pub(crate) vector: VectorArgs,
     #[command(flatten)]
     pub(crate) at: LevelArg,
@@ -82,10 +79,6 @@ pub(crate) struct ExportRoadsArgs {
 )]
 pub(crate) struct ExportEdgesArgs {
     #[command(flatten)]
-    pub(crate) from: RecordedArgs,
-    #[command(flatten)]
-    pub(crate) extract: ExtractArgs,
-    #[command(flatten)]
     pub(crate) vector: VectorArgs,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
@@ -94,6 +87,10 @@ pub(crate) struct ExportEdgesArgs {
 // What exports of lines with heights have.
 #[derive(Debug, Args)]
 pub(crate) struct VectorArgs {
+    #[command(flatten)]
+    pub(crate) from: RecordedArgs,
+    #[command(flatten)]
+    pub(crate) extract: ExtractArgs,
     #[command(flatten)]
     pub(crate) file: FileArgs,
     #[command(flatten)]

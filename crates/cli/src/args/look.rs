@@ -1,6 +1,7 @@
 //! How roads are drawn and how everything looks, for all commands that draw.
 
 use clap::{Args, builder::TypedValueParser};
+use corniche_presets::{Words, one_of};
 use corniche_styles::Style;
 use corniche_viewer::{
     CapTest, Caps, ClassSet, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,
@@ -9,7 +10,7 @@ use corniche_window::Visibility;
 
 use super::{
     overlay::{self, OverlayArg},
-    values::{Words, one_of, word_of},
+    values::word_of,
 };
 use crate::failure::Failure;
 

@@ -6,8 +6,9 @@ use clap::{Args, builder::TypedValueParser};
 use corniche_geom::TileId;
 use corniche_osm::Share;
 use corniche_pipeline::Step;
+use corniche_presets::one_of;
 
-use super::{shared::ThreadsArg, values::one_of, voice::json_progress};
+use super::{shared::ThreadsArg, voice::json_progress};
 use crate::failure::Failure;
 
 /// A step of a build that a process can do alone.

@@ -6,16 +6,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use clap::{
-    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
-    error::ErrorKind,
-};
+use clap::{builder::TypedValueParser, error::ErrorKind};
+use corniche_presets::Words;
 use corniche_remote::PackagePlace;
 
 use crate::{failure::Failure, names::is_package_name};
-
-/// The values of an option: the word of each, what its help says of it, if it says anything, and what it stands for.
-pub(crate) type Words<T, const N: usize> = [(&'static str, &'static str, T); N];
 
 /// The word of a value.
 pub(crate) fn word_of<T: PartialEq, const N: usize>(
@@ -23,20 +18,6 @@ pub(crate) fn word_of<T: PartialEq, const N: usize>(
     value: &T,
 ) -> &'static str {
     values.iter().find(|(_, _, own)| own == value).map_or("", |(word, ..)| word)
-}
-
-/// One of some values by its word.
-pub(crate) fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
-    values: Words<T, N>,
-) -> impl TypedValueParser<Value = T> {
-    let words = values.map(|(word, help, _)| {
-        let value = PossibleValue::new(word);
-        if help.is_empty() { value } else { value.help(help) }
-    });
-    PossibleValuesParser::new(words).try_map(move |given| {
-        let found = values.iter().find(|(word, ..)| *word == given);
-        found.map(|(_, _, value)| *value).ok_or("it is no value of this option")
-    })
 }
 
 /// The package that a command reads: a file, or an address on a web server.

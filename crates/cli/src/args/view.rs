@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use corniche_presets::{Words, one_of};
 use corniche_window::Inertia;
 
 use super::{
@@ -10,7 +11,7 @@ use super::{
     ground::GroundArgs,
     look::{LookArgs, Roads},
     shared::{GpuArgs, PackageArg},
-    values::{Words, one_of, parse_size},
+    values::parse_size,
 };
 
 /// How movements of the camera end.

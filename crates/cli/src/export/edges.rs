@@ -5,7 +5,7 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::Manifest;
 
 use super::{
-    lines::{LinesArgs, LinesExport},
+    lines::LinesExport,
     vector_files::{MEMORY_BYTES, facts, fill, spans_text},
 };
 use crate::{
@@ -19,16 +19,8 @@ use crate::{
 
 pub(crate) fn run(args: &ExportEdgesArgs) -> Result<ExitCode, Failure> {
     let usage = "corniche export edges PACKAGE -o FILE --dem FILE... --osm FILE...";
-    let lines = LinesArgs {
-        from: &args.from,
-        extract: &args.extract,
-        vector: &args.vector,
-        cpu: &args.cpu,
-        level: None,
-        usage,
-    };
     let LinesExport { format, coordinates, package, output, elevation, network } =
-        LinesExport::begin(&lines, "edges")?;
+        LinesExport::begin(&args.vector, None, &args.cpu, ("edges", usage))?;
     // The package alone may have been named after these options.
     let (Some(elevation), Some(network)) = (elevation, network) else {
         return Err(Failure::unusable(format!(

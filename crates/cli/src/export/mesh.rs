@@ -62,8 +62,8 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
         .transpose()?;
     let size = output.place().inspect_err(|_| {
         // Materials without a model are of no use, but those that were there before belong to another one.
-        if let Some(Placed { path, is_new: true }) = &placed {
-            let _ = fs::remove_file(path);
+        if let Some(Some(new)) = &placed {
+            let _ = fs::remove_file(new);
         }
     })?;
     messages::summary(&to_text(args, &summary, package.manifest(), size));
@@ -76,13 +76,6 @@ struct Materials {
     output: Output,
 }
 
-/// A file of materials in its place.
-struct Placed {
-    path: PathBuf,
-    /// Nothing was there before.
-    is_new: bool,
-}
-
 impl Materials {
     /// An unusable place is reported here, before any work is done.
     fn begin(path: PathBuf, existing: Existing, args: &ExportMeshArgs) -> Result<Self, Failure> {
@@ -91,12 +84,12 @@ impl Materials {
         Ok(Self { path, output })
     }
 
-    /// Writes it and puts it in its place: before the model, which names it.
-    fn place(self, content: &str) -> Result<Placed, Failure> {
+    /// Writes it and puts it in its place: before the model, which names it. Gives the place if nothing was there before.
+    fn place(self, content: &str) -> Result<Option<PathBuf>, Failure> {
         let Self { path, output } = self;
         let is_new = path.symlink_metadata().is_err();
         output.write_whole(content.as_bytes())?;
-        Ok(Placed { path, is_new })
+        Ok(is_new.then_some(path))
     }
 }
 

@@ -6,6 +6,7 @@ use corniche_export::{
     Coordinates, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest, QuantizedMeshSummary,
     export_quantized_mesh,
 };
+use corniche_spec::machine::FileSystem;
 use corniche_tileset::Manifest;
 
 use crate::{
@@ -69,13 +70,15 @@ fn plan_text(plan: &QuantizedMeshPlan) -> String {
 fn refuse_full_disk(plan: &QuantizedMeshPlan, folder: &Path) -> Result<(), Failure> {
     let needed = plan.bytes.saturating_add(plan.files() * HALF_BLOCK_BYTES);
     // Where nothing is known of the file system, writing tells.
-    match corniche_spec::machine::free_bytes(folder) {
-        Ok(free) if free < needed => Err(Failure::unusable(format!(
-            "about {} are needed for {} files, and {} are free there; choose a coarser level with --max-level, or another folder",
-            bytes(needed),
-            noted(plan.files()),
-            bytes(free),
-        ))),
+    match FileSystem::of(folder) {
+        Ok(FileSystem { free_bytes: free, .. }) if free < needed => {
+            Err(Failure::unusable(format!(
+                "about {} are needed for {} files, and {} are free there; choose a coarser level with --max-level, or another folder",
+                bytes(needed),
+                noted(plan.files()),
+                bytes(free),
+            )))
+        }
         _ => Ok(()),
     }
 }

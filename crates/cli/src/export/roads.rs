@@ -7,7 +7,7 @@ use corniche_export::{
 use corniche_tileset::Manifest;
 
 use super::{
-    lines::{LinesArgs, LinesExport},
+    lines::LinesExport,
     vector_files::{MEMORY_BYTES, facts, fill, spans_text},
 };
 use crate::{
@@ -20,16 +20,9 @@ use crate::{
 };
 
 pub(crate) fn run(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
-    let lines = LinesArgs {
-        from: &args.from,
-        extract: &args.extract,
-        vector: &args.vector,
-        cpu: &args.cpu,
-        level: args.at.level,
-        usage: "corniche export roads PACKAGE -o FILE --dem FILE...",
-    };
+    let usage = "corniche export roads PACKAGE -o FILE --dem FILE...";
     let LinesExport { format, coordinates, package, output, elevation, network } =
-        LinesExport::begin(&lines, "roads")?;
+        LinesExport::begin(&args.vector, args.at.level, &args.cpu, ("roads", usage))?;
     let request = FeatureRequest {
         format,
         level: args.at.level,

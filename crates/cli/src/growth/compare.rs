@@ -214,12 +214,8 @@ impl Difference {
     pub(crate) fn text(&self, packages: &[Compared<'_>]) -> String {
         let labels = |of: &[usize]| list(of.iter().map(|&index| &packages[index].label));
         let value = |(of, value): &(Vec<usize>, String)| format!("{}: {value}", labels(of));
-        format!("{}: {}", self.what, list_of(self.values.iter().map(value)))
+        format!("{}: {}", self.what, self.values.iter().map(value).collect::<Vec<_>>().join("; "))
     }
-}
-
-fn list_of(parts: impl Iterator<Item = String>) -> String {
-    parts.collect::<Vec<_>>().join("; ")
 }
 
 /// The comparison for people.

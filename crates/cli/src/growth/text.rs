@@ -5,12 +5,13 @@ use corniche_tileset::{GrowthRow, Manifest};
 use super::factors::{PAPER_GROWTH, factors, of_level, whole};
 use crate::{
     documents::growth::Factors,
+    info::or_dash,
     table::{Digits, Table, bytes},
 };
 
 /// A growth factor; a dash where there is nothing to divide by.
 pub(crate) fn factor(value: Option<f64>) -> String {
-    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"))
+    or_dash(value, 2)
 }
 
 fn line(name: String, row: &GrowthRow, factors: &Factors, digits: Digits) -> [String; 13] {
