@@ -44,15 +44,17 @@ pub(crate) use overlay::parse as overlay;
 pub(crate) use overlay::{OverlayArg, styled as with_overlays};
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use profile::ProfileArgs;
-pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
+pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs};
 pub(crate) use serve::ServeArgs;
-pub(crate) use shared::{DatumArg, ExtractArgs, FileArgs, RecordedArgs, ThreadsArg};
+pub(crate) use shared::{
+    DatumArg, ExtractArgs, FileArgs, FolderArgs, PackageArg, RecordedArgs, ThreadsArg,
+};
 pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use values::word_of;
 pub(crate) use view::ViewArgs;
 pub(crate) use voice::{LogFormat, Voice};
 
-use self::voice::{JSON_PROGRESS, VoiceArgs};
+use self::voice::JSON_PROGRESS;
 use crate::escaped::one_line;
 
 /// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.
@@ -64,10 +66,9 @@ pub(crate) struct Arguments {
     /// The name of the command.
     #[arg(skip)]
     pub(crate) name: String,
+    /// How the program is to talk.
     #[command(flatten)]
-    voice: VoiceArgs,
-    #[arg(skip)]
-    json_progress: bool,
+    pub(crate) voice: Voice,
     /// End, with exit code 1, when standard input ends: for programs that start this one and keep a pipe to it open. It ends when they
     /// do, however they end. The same part or merge goes on from what was done
     #[arg(long, global = true, help_heading = "For programs")]
@@ -87,28 +88,18 @@ impl Arguments {
     fn parsed(words: &[OsString]) -> Result<Self, clap::Error> {
         let matches = Self::command().try_get_matches_from(words);
         let matches = matches.map_err(|error| with_tip(error, words))?;
-        let arguments = Self {
-            name: matches.subcommand_name().unwrap_or_default().to_owned(),
-            json_progress: has_json_progress(&matches),
-            ..Self::from_arg_matches(&matches)?
-        };
+        let mut arguments = Self::from_arg_matches(&matches)?;
+        matches.subcommand_name().unwrap_or_default().clone_into(&mut arguments.name);
+        arguments.voice.json_progress = has_json_progress(&matches);
         // Conflicts of options before the command's name with those behind it are not the parser's.
-        let Voice { is_quiet, verbosity, json_progress, .. } = arguments.voice();
-        let given = [
-            (is_quiet, "--quiet"),
-            (verbosity > 0, "--verbose"),
-            (json_progress, "--json-progress"),
-        ];
+        let Voice { quiet, verbose, json_progress, .. } = arguments.voice;
+        let given =
+            [(quiet, "--quiet"), (verbose > 0, "--verbose"), (json_progress, "--json-progress")];
         let given: Vec<&str> =
             given.into_iter().filter_map(|(is_given, name)| is_given.then_some(name)).collect();
         let [first, second, ..] = given[..] else { return Ok(arguments) };
         let text = format!("the argument '{second}' cannot be used with '{first}'");
         Err(Self::command().error(ErrorKind::ArgumentConflict, text))
-    }
-
-    /// How the program is to talk.
-    pub(crate) fn voice(&self) -> Voice {
-        self.voice.voice(self.json_progress)
     }
 }
 

@@ -17,7 +17,7 @@ use corniche_presets::{
 use corniche_roads::ClassFilter;
 use corniche_spec::{
     PhotoChoice, PhotoSettings, PlanSettings, Resources, RoadSettings, TerrainSettings,
-    inputs::{elevation_names, extract_names},
+    inputs::{elevation_names, extract_names, input_name},
 };
 
 use crate::{args::WorkArgs, credits, exit::ExitCode, failure::Failure, presets};
@@ -115,14 +115,9 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     Ok(Work { plan, resources, tmp, force })
 }
 
-/// The name of an input for GDAL and for plans.
-fn input_name(path: PathBuf) -> Result<PathBuf, Failure> {
-    corniche_spec::inputs::input_name(path).map_err(Failure::unusable)
-}
-
 /// Reads a polygon.
 pub(crate) fn polygon(path: PathBuf) -> Result<Polygon, Failure> {
-    let read = Polygon::read(&input_name(path)?);
+    let read = Polygon::read(&input_name(path).map_err(Failure::unusable)?);
     read.map_err(|error| Failure::new(ExitCode::Unusable, error))
 }
 

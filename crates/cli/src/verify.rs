@@ -10,7 +10,7 @@ use corniche_verify::{
 };
 
 use crate::{
-    args::{VerifyArgs, VerifyFiles},
+    args::VerifyArgs,
     documents::{to_line, verify::VerifyDocument},
     escaped::in_line,
     exit::ExitCode,
@@ -24,7 +24,7 @@ use crate::{
 };
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
-    let VerifyFiles { package, dem, photo, osm } = args.files()?;
+    let (package, [dem, photo, osm]) = args.files()?;
     let package = packages::open(&package)?;
     let osm = extract(args, &osm, &package)?;
     let settings = VerifySettings {
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
         let held = [manifest.settings.photo.is_some(), manifest.has_extract()];
         let missing = Missing::of(&report, held);
         let digits = Digits::of_answers();
-        if messages::voice().is_quiet {
+        if messages::voice().quiet {
             to_short_text(&report, &missing, digits)
         } else {
             to_text(&report, &missing, digits)

@@ -102,17 +102,6 @@ struct Ground {
     rates: Rates,
 }
 
-/// What the ground of all levels takes.
-struct GroundCosts {
-    /// Intermediate results beside the encoded ground.
-    kept_bytes: f64,
-    /// The encoded ground.
-    bytes: f64,
-    /// Time on one core.
-    core_seconds: f64,
-    rates: Rates,
-}
-
 impl Estimate {
     /// What a build of `opened` will take. Where the data are many, some of their tiles are read.
     ///
@@ -212,14 +201,24 @@ impl Estimate {
             [of_levels(|level| level.triangles), of_levels(|level| level.terrain_bytes)];
         let relief_bytes =
             if relief == ReliefLevels::Off { 0 } else { of_levels(|level| level.relief_bytes) };
-        let kept = all * (rates::RECORD_BYTES + 3 * rates::ARTIFACT_BYTES);
-        let ground = GroundCosts {
-            kept_bytes: kept as f64,
-            bytes: (terrain_bytes + relief_bytes) as f64,
-            core_seconds: rates::SECONDS_PER_RECORDED_TRIANGLE * triangles as f64,
+        let extract = extract_bytes as f64;
+        let package =
+            (terrain_bytes + relief_bytes) as f64 + rates::ROADS_PER_EXTRACT_BYTE * extract;
+        let records = all * (rates::RECORD_BYTES + 3 * rates::ARTIFACT_BYTES);
+        let pieces = rates::PIECES_PER_EXTRACT_BYTE * extract;
+        let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
+        let core_seconds = rates::SECONDS_PER_RECORDED_TRIANGLE * triangles as f64
+            + rates::SECONDS_PER_EXTRACT_BYTE * extract;
+        Self {
+            nodes: manifest.counts.samples.nodes,
+            tiles,
+            store_bytes: (records as f64 + package + pieces).max(while_sorted).ceil() as u64,
+            package_bytes: package.ceil() as u64,
+            core_seconds,
+            seconds: core_seconds / memory.cores(),
+            memory,
             rates: Rates::Recorded,
-        };
-        Self::with_extract(manifest.counts.samples.nodes, tiles, memory, extract_bytes, ground)
+        }
     }
 
     /// The same with the reliefs of these levels.
@@ -244,35 +243,19 @@ impl Estimate {
         let all: u64 = tiles.iter().sum();
         let finest = tiles.last().copied().unwrap_or(0);
         let coarse = all - finest;
+        let extract = extract_bytes as f64;
         let finest_triangles = ground.triangles_per_node * nodes as f64;
         let all_triangles = rates::ALL_PER_FINEST * finest_triangles;
+        let grounds = all_triangles * rates::payload_bytes_per_triangle(ground.triangles_per_node);
+        let package = grounds + rates::ROADS_PER_EXTRACT_BYTE * extract;
         let fixed = finest * rates::HEIGHTS_BYTES
             + coarse * rates::RASTER_BYTES
             + all * (rates::RECORD_BYTES + rates::TILE_ARTIFACTS * rates::ARTIFACT_BYTES);
         let coarse_tins = (all_triangles - finest_triangles) * rates::TIN_BYTES_PER_TRIANGLE;
-        let ground = GroundCosts {
-            kept_bytes: fixed as f64 + coarse_tins,
-            bytes: all_triangles * rates::payload_bytes_per_triangle(ground.triangles_per_node),
-            core_seconds: ground.core_seconds,
-            rates: ground.rates,
-        };
-        Self::with_extract(nodes, tiles, memory, extract_bytes, ground)
-    }
-
-    /// The estimate for a ground, and for the roads of an extract on it.
-    fn with_extract(
-        nodes: u64,
-        tiles: Vec<u64>,
-        memory: MemoryEstimate,
-        extract_bytes: u64,
-        ground: GroundCosts,
-    ) -> Self {
-        let extract = extract_bytes as f64;
-        let package = ground.bytes + rates::ROADS_PER_EXTRACT_BYTE * extract;
         // What is sorted is gone before heights come.
         let pieces = rates::PIECES_PER_EXTRACT_BYTE * extract;
         let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
-        let store = (ground.kept_bytes + package + pieces).max(while_sorted);
+        let store = (fixed as f64 + coarse_tins + package + pieces).max(while_sorted);
         let core_seconds = ground.core_seconds + rates::SECONDS_PER_EXTRACT_BYTE * extract;
         Self {
             nodes,

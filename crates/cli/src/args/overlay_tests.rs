@@ -1,5 +1,7 @@
 //! Entries of `--overlay` are read in any order, and mistakes are told.
 
+use std::path::Path;
+
 use super::*;
 
 fn usual() -> LineStyle {

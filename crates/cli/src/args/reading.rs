@@ -73,21 +73,11 @@ impl VerifyArgs {
     ///
     /// # Errors
     /// When no package is named, or several may be meant.
-    pub(crate) fn files(&self) -> Result<VerifyFiles, Failure> {
+    pub(crate) fn files(&self) -> Result<(PackagePlace, [Vec<PathBuf>; 3]), Failure> {
         let lists = [&*self.dem, &*self.photo, &*self.osm];
         let usage = "corniche verify PACKAGE --dem FILE...";
-        let (package, [dem, photo, osm]) = package_among(self.package.as_ref(), lists, usage)?;
-        Ok(VerifyFiles { package, dem, photo, osm })
+        package_among(self.package.as_ref(), lists, usage)
     }
-}
-
-/// The files of a verification.
-#[derive(Debug)]
-pub(crate) struct VerifyFiles {
-    pub(crate) package: PackagePlace,
-    pub(crate) dem: Vec<PathBuf>,
-    pub(crate) photo: Vec<PathBuf>,
-    pub(crate) osm: Vec<PathBuf>,
 }
 
 /// What the coordinates in a dump are.

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::documents::info_schema::RowDocument;
 
 /// What laying roads on the terrain costs.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct GrowthDocument {
     /// One for each level and class.
@@ -22,7 +22,7 @@ pub(crate) struct GrowthDocument {
 }
 
 /// What a level costs, all classes. Ratios are null where there is nothing to divide by.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct LevelGrowthDocument {
     /// Level.
@@ -47,7 +47,7 @@ pub(crate) struct LevelGrowthDocument {
 }
 
 /// What a row, or a sum of rows, grew by. Ratios are null where there is nothing to divide by.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Factors {
     /// Clipped vertices over simplified ones.
@@ -65,7 +65,7 @@ pub(crate) struct Factors {
 }
 
 /// What all levels cost together. Ratios are null where there is nothing to divide by.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct WholeGrowthDocument {
     /// Points of the source lines, once.
@@ -81,7 +81,7 @@ pub(crate) struct WholeGrowthDocument {
 }
 
 /// Several packages beside each other.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ComparisonDocument {
     /// The packages, in the order in which they were named.
@@ -91,7 +91,7 @@ pub(crate) struct ComparisonDocument {
 }
 
 /// One of several packages.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ComparedDocument {
     /// Its path, as it was given.
@@ -105,7 +105,7 @@ pub(crate) struct ComparedDocument {
 }
 
 /// Something in which packages differ.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct DifferenceDocument {
     /// Its name in words, such as "extract", "classes by level", "voids filled" or "polygon".
@@ -115,7 +115,7 @@ pub(crate) struct DifferenceDocument {
 }
 
 /// A value, and who has it.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct DifferentValueDocument {
     /// The packages that have it, by their paths.

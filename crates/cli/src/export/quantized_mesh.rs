@@ -9,15 +9,14 @@ use corniche_export::{
 use corniche_spec::machine::FileSystem;
 use corniche_tileset::Manifest;
 
+use super::vector_files::fill_folder;
 use crate::{
     args::ExportQuantizedMeshArgs,
     credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    messages,
-    output::{existing_of, folder::FolderOutput},
-    packages,
+    messages, packages,
     progress::Progress,
     settings,
     table::{bytes, noted},
@@ -38,20 +37,15 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
         gzip: args.compress,
         threads: settings::threads(args.cpu.threads),
     };
-    let existing = existing_of(args.folder.overwrite);
-    let output = FolderOutput::create(&args.folder.output, existing, &[args.from.package.name()])?;
-    let plan = QuantizedMeshPlan::new(&package, &request)
-        .map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
-    messages::note(&plan_text(&plan));
-    refuse_full_disk(&plan, output.path())?;
-    let exported = Progress::of(|progress| {
+    let export = |folder: &Path, progress: &Progress| -> Result<_, Failure> {
+        let plan = QuantizedMeshPlan::new(&package, &request)?;
+        messages::note(&plan_text(&plan));
+        refuse_full_disk(&plan, folder)?;
         let effort = plan.levels.iter().rev().map(|level| (level.tiles, level.effort));
         progress.expect_efforts(effort.collect());
-        export_quantized_mesh(&package, (&request, plan), output.path(), progress)
-    });
-    let summary =
-        exported.map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
-    let size = output.place("quantized-mesh")?;
+        Ok(export_quantized_mesh(&package, (&request, plan), folder, progress)?)
+    };
+    let (summary, size) = fill_folder(&args.folder, &args.from, "quantized-mesh", export)?;
     messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }

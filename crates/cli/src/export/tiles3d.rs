@@ -1,17 +1,18 @@
 //! `corniche export 3dtiles`: a package as 3D Tiles.
 
+use std::path::Path;
+
 use corniche_export::{Coordinates, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
 use corniche_tileset::Manifest;
 
+use super::vector_files::fill_folder;
 use crate::{
     args::ExportTiles3dArgs,
     credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    messages,
-    output::{existing_of, folder::FolderOutput},
-    packages,
+    messages, packages,
     progress::Progress,
     settings, styles,
     table::{bytes, noted},
@@ -32,13 +33,9 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
         coordinates: args.heights.unwrap_or(Coordinates::Wgs84),
         threads: settings::threads(args.cpu.threads),
     };
-    let existing = existing_of(args.folder.overwrite);
-    let output = FolderOutput::create(&args.folder.output, existing, &[args.from.package.name()])?;
-    let exported =
-        Progress::of(|progress| export_tiles3d(&package, &request, output.path(), progress));
-    let summary =
-        exported.map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
-    let size = output.place("3D Tiles")?;
+    let export =
+        |folder: &Path, progress: &Progress| export_tiles3d(&package, &request, folder, progress);
+    let (summary, size) = fill_folder(&args.folder, &args.from, "3D Tiles", export)?;
     messages::summary(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }

@@ -7,8 +7,14 @@ use corniche_tileset::Manifest;
 use corniche_verify::RecordedElevation;
 
 use crate::{
-    args::FileArgs, credits::credits_line, escaped::in_line, failure::Failure, names,
-    output::named::NamedOutput, progress::Progress, table::noted,
+    args::{FileArgs, FolderArgs, PackageArg},
+    credits::credits_line,
+    escaped::in_line,
+    failure::Failure,
+    names,
+    output::{existing_of, folder::FolderOutput, named::NamedOutput},
+    progress::Progress,
+    table::noted,
 };
 
 /// Memory for sorting pieces by their objects.
@@ -26,6 +32,20 @@ pub(crate) fn fill<T, E: Into<Failure>>(
     elevation.map_or(Ok(()), RecordedElevation::check_unchanged)?;
     let summary = exported.map_err(|error| error.into().about_target(&file.output))?;
     Ok((summary, output.place()?))
+}
+
+/// Writes a folder, which is none with a file of the package, and puts it into its place. Gives its size, too.
+pub(crate) fn fill_folder<T, E: Into<Failure>>(
+    args: &FolderArgs,
+    package: &PackageArg,
+    what: &str,
+    export: impl FnOnce(&Path, &Progress) -> Result<T, E>,
+) -> Result<(T, u64), Failure> {
+    let used = [package.package.name()];
+    let output = FolderOutput::create(&args.output, existing_of(args.overwrite), &used)?;
+    let exported = Progress::of(|progress| export(output.path(), progress));
+    let summary = exported.map_err(|error| error.into().about_target(&args.output))?;
+    Ok((summary, output.place(what)?))
 }
 
 /// The format that is named, or that of the ending.

@@ -11,28 +11,20 @@ const HEADINGS: &str = "level,class,source_vertices,simplified_vertices,geo_vert
 
 /// The rows of one package, under headings.
 pub(crate) fn to_csv(manifest: &Manifest) -> String {
-    let mut text = format!("{HEADINGS}\n");
-    for line in lines(manifest) {
-        text.push_str(&line);
-        text.push('\n');
-    }
-    text
+    format!("{HEADINGS}\n{}", rows("", manifest))
 }
 
 /// The rows of several packages, with their names in front.
 pub(crate) fn to_csv_of_several<'a>(
     packages: impl IntoIterator<Item = (&'a str, &'a Manifest)>,
 ) -> String {
-    let mut text = format!("package,{HEADINGS}\n");
-    for (name, manifest) in packages {
-        for line in lines(manifest) {
-            text.push_str(&quoted(name));
-            text.push(',');
-            text.push_str(&line);
-            text.push('\n');
-        }
-    }
-    text
+    let rows =
+        packages.into_iter().map(|(name, manifest)| rows(&format!("{},", quoted(name)), manifest));
+    format!("package,{HEADINGS}\n{}", rows.collect::<String>())
+}
+
+fn rows(begin: &str, manifest: &Manifest) -> String {
+    lines(manifest).iter().map(|line| [begin, line, "\n"].concat()).collect()
 }
 
 /// A row for each level and class, then for each level, then for the whole; ratios are empty where there is nothing to divide by.

@@ -37,7 +37,7 @@ impl PictureFiles {
         let (target, existing) = (args.output.as_path(), existing_of(args.overwrite));
         let from_above = &args.from_above;
         if MAP.is_of(target) {
-            refuse_map(target, from_above.is_from_above(), from_above.world_file)?;
+            refuse_map(target, from_above.ortho, from_above.world_file)?;
             let map = NamedOutput::create(target, existing, "map.tif".to_owned(), used)?;
             return Ok(Self { target: target.to_path_buf(), files: Files::Map(map) });
         }
