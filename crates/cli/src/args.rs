@@ -32,7 +32,7 @@ pub(crate) use build::{BuildArgs, PlanArgs, WorkArgs};
 pub(crate) use camera::PrintScale;
 pub(crate) use drawing::{DETAILS, FlyArgs, RenderArgs};
 pub(crate) use export::{
-    Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportEdgesArgs, ExportGeoTiffArgs,
+    Export, ExportAreasArgs, ExportBoundariesArgs, ExportEdgesArgs, ExportGeoTiffArgs,
     ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs, InPlanArgs,
     VectorArgs,
 };
@@ -316,7 +316,8 @@ pub(crate) enum Command {
     /// Dump one decoded tile
     Tile(TileArgs),
     /// Give what a package holds to other programs
-    Export(ExportArgs),
+    #[command(subcommand)]
+    Export(Export),
     /// Draw a package to a PNG, without a window
     Render(RenderArgs),
     /// Fly over a package and tell what each frame costs; needs no window

@@ -155,7 +155,7 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         Command::Jobs(args) => args.files().unwrap(),
         Command::Part(args) => args.planned.files().unwrap(),
         Command::Merge(args) => args.planned.files().unwrap(),
-        Command::Export(args) => match &args.what {
+        Command::Export(what) => match what {
             Export::GeoTiff(args) => measured(&args.from, &[]),
             Export::Roads(args) => measured(&args.vector.from, &args.vector.extract.osm),
             Export::Boundaries(args) => {

@@ -19,7 +19,7 @@ use corniche_tileset::{FilePackage, Manifest};
 pub(crate) use self::vector_files::MEMORY_BYTES;
 use self::vector_files::{coordinates, crs_text, fill, format};
 use crate::{
-    args::{Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, FileArgs, InPlanArgs},
+    args::{Export, ExportAreasArgs, ExportBoundariesArgs, FileArgs, InPlanArgs},
     credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
@@ -32,8 +32,8 @@ use crate::{
     table::{bytes, length, noted},
 };
 
-pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
-    match &args.what {
+pub(crate) fn run(what: &Export) -> Result<ExitCode, Failure> {
+    match what {
         Export::Roads(args) => roads::run(args),
         Export::Edges(args) => edges::run(args),
         Export::Areas(args) => areas(args),

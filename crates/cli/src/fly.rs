@@ -51,8 +51,7 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let overlays = overlays::load(&args.look, package.manifest())?;
     let (flown, methods) = (&flight, &methods);
     let plan = Plan { args, flight: flown, style: &style, methods, outputs: &outputs, overlays };
-    let Drawn { runs, adapter } =
-        if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
+    let (runs, adapter) = if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
     outputs.finish(&flight, WorkingCrs::of(package.manifest()), &runs, &adapter)?;
     let point_scale = package.manifest().point_scale;
@@ -80,28 +79,6 @@ fn flight(args: &FlyArgs, package: &dyn BlockingPackage) -> Result<Flight, Failu
         .map_err(|error| unusable(&error))
 }
 
-fn options(
-    args: &FlyArgs,
-    flight: &Flight,
-    style: &Style,
-    detail: Detail,
-    roads: Roads,
-) -> Result<ReplayOptions, Failure> {
-    Ok(ReplayOptions {
-        size_px: args.drawing.size,
-        roads: args.look.road_options(roads),
-        detail,
-        screen_space_error_px: args.drawing.ground.screen_space_error,
-        cell_px: args.drawing.ground.cell_px,
-        exaggeration: args.drawing.ground.exaggeration,
-        supersampling: args.drawing.supersampling,
-        style: style.clone(),
-        budget: args.drawing.gpu.budget(),
-        ahead_s: args.drawing.ahead,
-        frames: frames(args, flight)?,
-    })
-}
-
 /// All flights that are asked for.
 struct Plan<'a> {
     args: &'a FlyArgs,
@@ -112,11 +89,8 @@ struct Plan<'a> {
     overlays: Arc<Overlays>,
 }
 
-/// What came of them.
-struct Drawn {
-    runs: Vec<MeasuredRun>,
-    adapter: String,
-}
+/// What came of them, and what drew them.
+type Drawn = (Vec<MeasuredRun>, String);
 
 /// A window that shows frames while they are drawn.
 struct Watcher<'a> {
@@ -175,7 +149,7 @@ impl Plan<'_> {
                 runs.push(self.fly_once(&gpu, watcher, lod, roads)?);
             }
         }
-        Ok(Drawn { runs, adapter: gpu.adapter_name().to_owned() })
+        Ok((runs, gpu.adapter_name().to_owned()))
     }
 
     fn fly_once(
@@ -185,7 +159,20 @@ impl Plan<'_> {
         lod: Detail,
         roads: Roads,
     ) -> Result<MeasuredRun, Failure> {
-        let options = options(self.args, self.flight, self.style, lod, roads)?;
+        let drawing = &self.args.drawing;
+        let options = ReplayOptions {
+            size_px: drawing.size,
+            roads: self.args.look.road_options(roads),
+            detail: lod,
+            screen_space_error_px: drawing.ground.screen_space_error,
+            cell_px: drawing.ground.cell_px,
+            exaggeration: drawing.ground.exaggeration,
+            supersampling: drawing.supersampling,
+            style: self.style.clone(),
+            budget: drawing.gpu.budget(),
+            ahead_s: drawing.ahead,
+            frames: frames(self.args, self.flight)?,
+        };
         let package = packages::source(&self.args.from.package)?
             .for_look(options.roads.method, &options.style);
         let package = package.with_overlays(Arc::clone(&self.overlays));

@@ -3,7 +3,6 @@
 use std::{collections::BTreeMap, num::NonZeroUsize, path::PathBuf};
 
 use clap::Args;
-use corniche_areas::ClassedLayer;
 use corniche_geom::Cell;
 use corniche_settings::ReliefLevels;
 use serde::{Deserialize, Deserializer, de::Error};
@@ -103,16 +102,6 @@ macro_rules! options {
 }
 
 corniche_settings::settings! { [options] () }
-
-impl AreaOptions {
-    /// Whether a layer of lines is wanted.
-    #[must_use]
-    pub fn lines(&self, layer: ClassedLayer) -> Option<bool> {
-        match layer {
-            ClassedLayer::Boundaries => self.boundaries,
-        }
-    }
-}
 
 /// A list of numbers, or one alone; an empty one says nothing.
 fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<f64>>, D::Error> {

@@ -20,22 +20,6 @@ pub fn parse_bytes(text: &str) -> Result<u64, String> {
     }
 }
 
-/// The least memory: with less a build cannot hold a tile for each of a few threads.
-const MIN_MEMORY_BYTES: u64 = 256 << 20;
-
-/// Memory that is enough to build in, bytes.
-///
-/// # Errors
-/// When the text is no size, or one that is too small.
-pub fn parse_memory(text: &str) -> Result<u64, String> {
-    match parse_bytes(text) {
-        Ok(size_bytes) if size_bytes >= MIN_MEMORY_BYTES => Ok(size_bytes),
-        _ => Err(format!(
-            "{text:?} is not a size of at least 256M; write it like 512M, 800MB, 0.5G or 1T"
-        )),
-    }
-}
-
 /// The lowest and the highest of something, in this order.
 pub(crate) fn parse_range(text: &str) -> Result<[f64; 2], String> {
     let ends = text

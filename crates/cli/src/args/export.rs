@@ -19,12 +19,6 @@ use super::{
 };
 use crate::failure::Failure;
 
-#[derive(Debug, Args)]
-pub(crate) struct ExportArgs {
-    #[command(subcommand)]
-    pub(crate) what: Export,
-}
-
 #[derive(Debug, Subcommand)]
 pub(crate) enum Export {
     /// Write the roads of a package, on its terrain, as lines with lengths and grades for GIS programs

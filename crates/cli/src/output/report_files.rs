@@ -9,7 +9,7 @@ use crate::{failure::Failure, names::CHART};
 pub(crate) struct ReportFiles<const LISTS: usize> {
     /// The one of `--svg`.
     svg: Option<Output>,
-    /// Those of the options for lists.
+    /// The files of the options for lists.
     lists: [Option<Output>; LISTS],
 }
 
