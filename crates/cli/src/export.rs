@@ -17,11 +17,9 @@ use corniche_remote::PackagePlace;
 use corniche_tileset::{FilePackage, Manifest};
 
 pub(crate) use self::vector_files::MEMORY_BYTES;
-use self::vector_files::{coordinates, crs_text, fill, format};
+use self::vector_files::{coordinates, crs_text, fill, format, tell};
 use crate::{
     args::{Export, ExportAreasArgs, ExportBoundariesArgs, FileArgs, InPlanArgs},
-    credits::credits_line,
-    escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages,
@@ -130,11 +128,7 @@ fn note_plan<C>(
     what: &str,
     (manifest, size): (&Manifest, u64),
 ) {
-    messages::summary(&format!(
-        "{}: {what}, {}\ncoordinates: {}{}",
-        in_line(&args.file.output.to_string_lossy()),
-        bytes(size),
-        crs_text(request.coordinates, request.format, manifest),
-        credits_line(manifest),
-    ));
+    let coordinates = crs_text(request.coordinates, request.format, manifest);
+    let what = format!("{what}, {}\ncoordinates: {coordinates}", bytes(size));
+    tell(&args.file.output, &what, manifest);
 }

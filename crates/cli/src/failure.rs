@@ -37,6 +37,11 @@ impl Failure {
         Self::new(ExitCode::Unusable, anyhow::anyhow!("{message}"))
     }
 
+    /// Something failed, with a text for the user.
+    pub(crate) fn failed(message: impl fmt::Display) -> Self {
+        Self::new(ExitCode::Failed, anyhow::anyhow!("{message}"))
+    }
+
     /// The same, with the file that it is about in front.
     pub(crate) fn about(self, path: &std::path::Path) -> Self {
         Self { error: self.error.context(path.display().to_string()), ..self }

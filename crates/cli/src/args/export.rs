@@ -16,6 +16,7 @@ use super::{
         RecordedArgs, RoadArg, ThreadsArg,
     },
     values::{package_among, package_place},
+    voice::json_progress,
 };
 use crate::failure::Failure;
 
@@ -44,6 +45,7 @@ pub(crate) enum Export {
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     override_usage = "corniche export roads [OPTIONS] --output <FILE> <PACKAGE>",
     mut_arg("level", |arg| arg.help("The level whose roads are taken [default: the finest]")),
     mut_arg("dem", |arg| arg.help("The elevation rasters the package was made from, in the same order: heights are theirs, not those of the package's triangles")),
@@ -67,6 +69,7 @@ pub(crate) struct ExportRoadsArgs {
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     override_usage = "corniche export edges [OPTIONS] --output <FILE> --dem <FILE>... --osm <FILE>... <PACKAGE>",
     mut_arg("dem", |arg| arg.required(true)),
     mut_arg("osm", |arg| arg.required(true).help("The extracts the package was made from: roads join where they name the same node")),
@@ -123,6 +126,7 @@ pub(crate) struct InPlanArgs {
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     mut_arg("level", |arg| arg.help("The level whose areas are taken [default: the finest]")),
     mut_arg("bounds", |arg| arg.help("Cut areas at a rectangle of WGS84 degrees; a west beyond the east crosses 180°")),
 )]
@@ -138,6 +142,7 @@ pub(crate) struct ExportAreasArgs {
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     mut_arg("level", |arg| arg.help("The level whose boundaries are taken [default: the finest]")),
     mut_arg("bounds", |arg| arg.help("Cut boundaries at a rectangle of WGS84 degrees; a west beyond the east crosses 180°")),
     mut_arg("osm", |arg| arg.help("The extracts the package was made from: boundaries then have the names of what they bound")),
@@ -171,6 +176,7 @@ impl ExportBoundariesArgs {
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     mut_arg("output", |arg| arg.help("The file to write; its ending is its format: .glb, .ply or .obj")),
     mut_arg("bounds", |arg| arg.help("Take what lies in a rectangle of WGS84 degrees, in whole triangles; a west beyond the east crosses 180°")),
 )]
@@ -214,6 +220,7 @@ pub(crate) struct ExportMeshArgs {
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     override_usage = "corniche export geotiff [OPTIONS] --output <FILE> <PACKAGE>",
     mut_arg("output", |arg| arg.help("The file to write: .tif or .tiff")),
     mut_arg("dem", |arg| arg.help("The elevation rasters the package was made from, in the same order: a second band has TIN minus DEM")),
@@ -236,7 +243,7 @@ pub(crate) struct ExportGeoTiffArgs {
 }
 
 #[derive(Debug, Args)]
-#[command(mut_arg("bounds", |arg| arg.help("Take the tiles that meet a rectangle of WGS84 degrees, whole: coarse ones reach far beyond it; a west beyond the east crosses 180°")))]
+#[command(arg = json_progress(), mut_arg("bounds", |arg| arg.help("Take the tiles that meet a rectangle of WGS84 degrees, whole: coarse ones reach far beyond it; a west beyond the east crosses 180°")))]
 pub(crate) struct ExportTiles3dArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
@@ -304,6 +311,7 @@ pub(crate) struct ExportTiles3dArgs {
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     mut_arg("output", |arg| arg.help("The folder to write: layer.json and a folder for each level")),
     mut_arg("bounds", |arg| arg.help("Take the tiles of the finest level that meet a rectangle of WGS84 degrees, whole, and those above them; a west beyond the east crosses 180°")),
 )]

@@ -8,10 +8,7 @@ use corniche_presets::{BoundsChoice, Classes, parse_bytes};
 use corniche_remote::PackagePlace;
 use corniche_viewer::stream::StreamBudget;
 
-use super::{
-    values::{package_among, package_place},
-    voice::json_progress,
-};
+use super::values::{package_among, package_place};
 use crate::failure::Failure;
 
 // The package that is read.
@@ -64,7 +61,6 @@ pub(crate) struct ExtractArgs {
 
 // The file that an export writes.
 #[derive(Debug, Args)]
-#[command(arg = json_progress())]
 pub(crate) struct FileArgs {
     /// The file to write; its ending is its format: .gpkg, .fgb, .geojson or .csv
     #[arg(short, long, value_name = "FILE")]
@@ -76,7 +72,6 @@ pub(crate) struct FileArgs {
 
 // The folder that an export writes.
 #[derive(Debug, Args)]
-#[command(arg = json_progress())]
 pub(crate) struct FolderArgs {
     /// The folder to write: tileset.json and what it names
     #[arg(short, long, value_name = "FOLDER")]

@@ -48,12 +48,12 @@ impl TypedValueParser for PlaceParser {
 ///
 /// # Errors
 /// When it is an address that cannot be read.
-pub(crate) fn place_of(file: PathBuf) -> Result<PackagePlace, Failure> {
+fn place_of(file: PathBuf) -> Result<PackagePlace, Failure> {
     PackagePlace::parse(file.into()).map_err(Failure::unusable)
 }
 
 /// Whether one of several files may be the package: by its name, or as an address, which nothing else has. It may be one that cannot be read.
-pub(crate) fn may_be_package(file: &Path) -> bool {
+fn may_be_package(file: &Path) -> bool {
     is_package_name(file) || !matches!(PackagePlace::parse(file.into()), Ok(PackagePlace::File(_)))
 }
 

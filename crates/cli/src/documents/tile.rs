@@ -7,20 +7,21 @@ use serde::{Serialize, Serializer};
 use super::{areas::TileAreaDocument, lines::TileBoundaryDocument, spans::TileSpanDocument};
 
 /// A list whose items are made one after the other while it is written: together they would take several times the memory of the tile.
-pub(crate) struct Written<'a, Item>(Box<dyn Fn() -> Items<'a, Item> + 'a>);
+pub(crate) struct Written<'a, Item> {
+    count: usize,
+    item: Box<dyn Fn(usize) -> Item + 'a>,
+}
 
-type Items<'a, Item> = Box<dyn Iterator<Item = Item> + 'a>;
-
-impl<'a, Item: 'a> Written<'a, Item> {
+impl<'a, Item> Written<'a, Item> {
     /// Each of these as an item.
-    pub(crate) fn of<T>(all: &'a [T], item: impl Fn(&'a T) -> Item + Copy + 'a) -> Self {
-        Self(Box::new(move || Box::new(all.iter().map(item))))
+    pub(crate) fn of<T>(all: &'a [T], item: impl Fn(&'a T) -> Item + 'a) -> Self {
+        Self { count: all.len(), item: Box::new(move |index| item(&all[index])) }
     }
 }
 
 impl<Item: Serialize> Serialize for Written<'_, Item> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq((self.0)())
+        serializer.collect_seq((0..self.count).map(&self.item))
     }
 }
 

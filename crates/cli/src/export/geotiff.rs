@@ -5,26 +5,22 @@ use std::path::Path;
 use corniche_export::{GeoTiffRequest, GeoTiffSummary, export_geotiff};
 use corniche_tileset::{Manifest, SampleErrorRecord};
 
-use super::vector_files::fill;
+use super::vector_files::{fill, tell};
 use crate::{
     args::ExportGeoTiffArgs,
-    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages,
+    names::MAP,
     output::{existing_of, named::NamedOutput},
     packages, recorded,
     settings::threads,
     table::{bytes, noted},
 };
 
-/// Endings of names that programs take for a `GeoTIFF`.
-const ENDINGS: [&str; 2] = ["tif", "tiff"];
-
 pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
-    let ending = args.file.output.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    if !ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str())) {
+    if !MAP.is_of(&args.file.output) {
         return Err(Failure::unusable(format!(
             "{} is a raster; give it the ending .tif",
             args.file.output.display()
@@ -55,16 +51,11 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
             summary.heights
         ));
     }
-    messages::summary(&to_text(args, &summary, package.manifest(), size));
+    tell(&args.file.output, &to_text(&summary, package.manifest(), size), package.manifest());
     Ok(ExitCode::Done)
 }
 
-fn to_text(
-    args: &ExportGeoTiffArgs,
-    summary: &GeoTiffSummary,
-    manifest: &Manifest,
-    size: u64,
-) -> String {
+fn to_text(summary: &GeoTiffSummary, manifest: &Manifest, size: u64) -> String {
     let error = summary.sample_error.map_or_else(String::new, |error| {
         let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = error;
         let points = if manifest.nodes_are_samples { "samples" } else { "nodes, which lie between samples" };
@@ -75,8 +66,7 @@ fn to_text(
         )
     });
     format!(
-        "{}: level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}{}",
-        in_line(&args.file.output.to_string_lossy()),
+        "level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}",
         summary.level,
         noted(summary.columns),
         noted(summary.rows),
@@ -86,6 +76,5 @@ fn to_text(
         summary.error_bound_m,
         in_line(&manifest.crs),
         in_line(&summary.heights),
-        credits_line(manifest),
     )
 }

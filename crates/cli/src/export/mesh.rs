@@ -8,13 +8,13 @@ use std::{
 use corniche_export::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, export_mesh};
 use corniche_tileset::Manifest;
 
+use super::vector_files::tell;
 use crate::{
     args::ExportMeshArgs,
-    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    messages, names,
+    names,
     output::{Existing, Output, existing_of, named::NamedOutput},
     packages,
     progress::Progress,
@@ -66,7 +66,7 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
             let _ = fs::remove_file(new);
         }
     })?;
-    messages::summary(&to_text(args, &summary, package.manifest(), size));
+    tell(&args.file.output, &to_text(args, &summary, package.manifest(), size), package.manifest());
     Ok(ExitCode::Done)
 }
 
@@ -104,14 +104,12 @@ fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, si
         ModelRoads::Lines | ModelRoads::None => format!("{} lines of roads", noted(summary.lines)),
     };
     format!(
-        "{}: level {}, {} tiles, {} triangles, {roads}, {}\norigin: {x}, {y} in {}\nheights: as in the package, metres (datum: {}){}",
-        in_line(&args.file.output.to_string_lossy()),
+        "level {}, {} tiles, {} triangles, {roads}, {}\norigin: {x}, {y} in {}\nheights: as in the package, metres (datum: {})",
         summary.level,
         noted(summary.tiles),
         noted(summary.triangles),
         bytes(size),
         in_line(&manifest.crs),
         in_line(&manifest.vertical.datum),
-        credits_line(manifest),
     )
 }

@@ -7,12 +7,10 @@ use corniche_export::{
     export_quantized_mesh,
 };
 use corniche_spec::machine::FileSystem;
-use corniche_tileset::Manifest;
 
-use super::vector_files::fill_folder;
+use super::vector_files::{fill_folder, tell};
 use crate::{
     args::ExportQuantizedMeshArgs,
-    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
@@ -46,7 +44,7 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
         Ok(export_quantized_mesh(&package, (&request, plan), folder, progress)?)
     };
     let (summary, size) = fill_folder(&args.folder, &args.from, "quantized-mesh", export)?;
-    messages::summary(&to_text(args, &summary, package.manifest(), size));
+    tell(&args.folder.output, &to_text(&summary, size), package.manifest());
     Ok(ExitCode::Done)
 }
 
@@ -77,12 +75,7 @@ fn refuse_full_disk(plan: &QuantizedMeshPlan, folder: &Path) -> Result<(), Failu
     }
 }
 
-fn to_text(
-    args: &ExportQuantizedMeshArgs,
-    summary: &QuantizedMeshSummary,
-    manifest: &Manifest,
-    size: u64,
-) -> String {
+fn to_text(summary: &QuantizedMeshSummary, size: u64) -> String {
     let level = |level: &QuantizedMeshLevel| {
         let deviation = if level.places == 0 {
             "not measured: no place with ground is on its raster".to_owned()
@@ -107,12 +100,10 @@ fn to_text(
     };
     let tiles: u64 = summary.levels.iter().map(|level| level.tiles).sum();
     format!(
-        "{}: {} tiles, {}\n{}heights: {}{}",
-        in_line(&args.folder.output.to_string_lossy()),
+        "{} tiles, {}\n{}heights: {}",
         noted(tiles),
         bytes(size),
         summary.levels.iter().map(level).collect::<String>(),
         in_line(&summary.heights),
-        credits_line(manifest),
     )
 }

@@ -3,16 +3,14 @@
 use std::path::Path;
 
 use corniche_export::{Coordinates, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
-use corniche_tileset::Manifest;
 
-use super::vector_files::fill_folder;
+use super::vector_files::{fill_folder, tell};
 use crate::{
     args::ExportTiles3dArgs,
-    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    messages, packages,
+    packages,
     progress::Progress,
     settings, styles,
     table::{bytes, noted},
@@ -36,16 +34,11 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
     let export =
         |folder: &Path, progress: &Progress| export_tiles3d(&package, &request, folder, progress);
     let (summary, size) = fill_folder(&args.folder, &args.from, "3D Tiles", export)?;
-    messages::summary(&to_text(args, &summary, package.manifest(), size));
+    tell(&args.folder.output, &to_text(&summary, size), package.manifest());
     Ok(ExitCode::Done)
 }
 
-fn to_text(
-    args: &ExportTiles3dArgs,
-    summary: &Tiles3dSummary,
-    manifest: &Manifest,
-    size: u64,
-) -> String {
+fn to_text(summary: &Tiles3dSummary, size: u64) -> String {
     let level = |level: &Tiles3dLevel| {
         format!(
             "  level {}: {} tiles, {} triangles ({} in the package), {} of roads, {}, error {:.3} m, {:.1} ms of cutting a tile\n",
@@ -61,13 +54,11 @@ fn to_text(
     };
     let total = |of: fn(&Tiles3dLevel) -> u64| summary.levels.iter().map(of).sum::<u64>();
     format!(
-        "{}: {} tiles, {}, {} tileset documents\n{}heights: {}{}",
-        in_line(&args.folder.output.to_string_lossy()),
+        "{} tiles, {}, {} tileset documents\n{}heights: {}",
         noted(total(|level| level.tiles)),
         bytes(size),
         noted(summary.documents),
         summary.levels.iter().map(level).collect::<String>(),
         in_line(&summary.heights),
-        credits_line(manifest),
     )
 }

@@ -11,7 +11,7 @@ use crate::{
     credits::credits_line,
     escaped::in_line,
     failure::Failure,
-    names,
+    messages, names,
     output::{existing_of, folder::FolderOutput, named::NamedOutput},
     progress::Progress,
     table::noted,
@@ -32,6 +32,12 @@ pub(crate) fn fill<T, E: Into<Failure>>(
     elevation.map_or(Ok(()), RecordedElevation::check_unchanged)?;
     let summary = exported.map_err(|error| error.into().about_target(&file.output))?;
     Ok((summary, output.place()?))
+}
+
+/// Tells what was written, and what is to be shown with it.
+pub(crate) fn tell(output: &Path, what: &str, manifest: &Manifest) {
+    let name = output.to_string_lossy();
+    messages::summary(&format!("{}: {what}{}", in_line(&name), credits_line(manifest)));
 }
 
 /// Writes a folder, which is none with a file of the package, and puts it into its place. Gives its size, too.

@@ -120,6 +120,7 @@ const NOT_AS_THEY_ARE: [&str; 26] = [
 fn properties(manifest: &Manifest) -> Vec<Property> {
     let settings = &manifest.settings;
     let nodata = Some(&settings.nodata).filter(|values| !values.is_empty());
+    let usual = || "the default".to_owned();
     let mut properties = vec![
         ("extract", inputs(manifest, &[InputKind::Osm])),
         ("elevation data", inputs(manifest, &InputKind::OF_TERRAIN)),
@@ -131,13 +132,25 @@ fn properties(manifest: &Manifest) -> Vec<Property> {
         ("vertical shift", format!("{} m", settings.vertical_shift_m)),
         ("vertical unit", or(settings.vertical_unit.as_ref(), "that of the elevation data")),
         ("values without data", or(nodata, "as in the files")),
-        ("height range", height_range(settings.height_range_m)),
+        (
+            "height range",
+            settings.height_range_m.map_or_else(usual, |[low, high]| format!("{low} to {high} m")),
+        ),
         ("voids filled", format!("with data within {} cells", settings.fill_voids)),
         ("classes", classes(settings)),
         ("classes by level", classes_by_level(&settings.class_max_cell_m)),
-        ("simplification", simplification(settings.simplify_cells)),
+        (
+            "simplification",
+            match settings.simplify_cells {
+                cells if cells > 0.0 => format!("{cells} cells of the level"),
+                _ => "none".to_owned(),
+            },
+        ),
         ("CRS", in_line(&manifest.crs).into_owned()),
-        ("scale latitude", scale_latitude(settings.scale_latitude_deg)),
+        (
+            "scale latitude",
+            settings.scale_latitude_deg.map_or_else(usual, |latitude| format!("{latitude}°")),
+        ),
         ("bounds", or(settings.bounds_deg.as_ref(), "all of the elevation data")),
         ("polygon", or(settings.polygon.as_ref(), "none")),
     ];
@@ -156,21 +169,6 @@ fn or(value: Option<&impl SettingValue>, without: &str) -> String {
 fn datum_operations(found: &[DatumOperationRecord]) -> String {
     let texts: Vec<String> = found.iter().map(datum_operation).collect();
     if texts.is_empty() { "none".to_owned() } else { texts.join("; ") }
-}
-
-/// Heights that samples may have.
-fn height_range(range_m: Option<[f64; 2]>) -> String {
-    range_m.map_or_else(|| "the default".to_owned(), |[low, high]| format!("{low} to {high} m"))
-}
-
-/// How much roads are simplified.
-fn simplification(cells: f64) -> String {
-    if cells > 0.0 { format!("{cells} cells of the level") } else { "none".to_owned() }
-}
-
-/// The latitude at which lengths are true.
-fn scale_latitude(latitude_deg: Option<f64>) -> String {
-    latitude_deg.map_or_else(|| "the default".to_owned(), |latitude| format!("{latitude}°"))
 }
 
 /// The inputs of some kinds by name and hash.

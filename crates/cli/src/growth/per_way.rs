@@ -8,7 +8,6 @@ use corniche_store::folder_of;
 use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{
-    exit::ExitCode,
     export::MEMORY_BYTES,
     failure::Failure,
     output::{Complete, Output, failed},
@@ -112,17 +111,14 @@ impl Sums {
             let sums = self.geo.get(usize::from(row.level));
             let found = sums.and_then(|sums| sums.get(usize::from(row.class))).copied();
             if found != Some(row.geo_vertices) {
-                return Err(Failure::new(
-                    ExitCode::Unusable,
-                    anyhow::anyhow!(
-                        "{}: FRC {} has {} vertices on level {} in the growth table, and {} in the tiles; corniche verify says more",
-                        package.display(),
-                        row.class,
-                        row.geo_vertices,
-                        row.level,
-                        found.unwrap_or_default()
-                    ),
-                ));
+                return Err(Failure::unusable(format!(
+                    "{}: FRC {} has {} vertices on level {} in the growth table, and {} in the tiles; corniche verify says more",
+                    package.display(),
+                    row.class,
+                    row.geo_vertices,
+                    row.level,
+                    found.unwrap_or_default()
+                )));
             }
         }
         Ok(())
