@@ -24,33 +24,37 @@ mod voice;
 use std::{borrow::Cow, ffi::OsString, path::Path};
 
 use clap::{
-    CommandFactory as _, Parser, Subcommand, ValueEnum as _,
+    ArgMatches, CommandFactory as _, FromArgMatches as _, Parser, Subcommand,
     error::{ContextKind, ContextValue, ErrorKind},
 };
 
-pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
+pub(crate) use build::{BuildArgs, PlanArgs, WorkArgs};
 pub(crate) use camera::PrintScale;
-pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
+pub(crate) use drawing::{DETAILS, FlyArgs, RenderArgs};
 pub(crate) use export::{
-    Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, ExportCrs, ExportEdgesArgs,
-    ExportGeoTiffArgs, ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs,
-    InPlanArgs, VectorArgs,
+    Export, ExportAreasArgs, ExportBoundariesArgs, ExportEdgesArgs, ExportGeoTiffArgs,
+    ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs, InPlanArgs,
+    VectorArgs,
 };
 pub(crate) use growth::GrowthArgs;
-pub(crate) use look::{LookArgs, Roads};
+pub(crate) use look::{LookArgs, OUTLINES, ROADS, Roads, WIDTH_GROWTHS};
 pub(crate) use matching::MatchArgs;
 #[cfg(test)]
 pub(crate) use overlay::parse as overlay;
 pub(crate) use overlay::{OverlayArg, styled as with_overlays};
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use profile::ProfileArgs;
-pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
+pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs};
 pub(crate) use serve::ServeArgs;
-pub(crate) use shared::{DatumArg, ExtractArgs, FileArgs, RecordedArgs, ThreadsArg};
+pub(crate) use shared::{
+    DatumArg, ExtractArgs, FileArgs, FolderArgs, PackageArg, RecordedArgs, ThreadsArg,
+};
 pub(crate) use shell::{CompletionsArgs, ManArgs};
-pub(crate) use view::{Motion, ViewArgs};
-pub(crate) use voice::{LogFormat, Voice, VoiceArgs};
+pub(crate) use values::word_of;
+pub(crate) use view::ViewArgs;
+pub(crate) use voice::{LogFormat, Voice};
 
+use self::voice::JSON_PROGRESS;
 use crate::escaped::one_line;
 
 /// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.
@@ -59,8 +63,12 @@ use crate::escaped::one_line;
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// The name of the command.
+    #[arg(skip)]
+    pub(crate) name: String,
+    /// How the program is to talk.
     #[command(flatten)]
-    pub(crate) voice: VoiceArgs,
+    pub(crate) voice: Voice,
     /// End, with exit code 1, when standard input ends: for programs that start this one and keep a pipe to it open. It ends when they
     /// do, however they end. The same part or merge goes on from what was done
     #[arg(long, global = true, help_heading = "For programs")]
@@ -78,24 +86,20 @@ impl Arguments {
     }
 
     fn parsed(words: &[OsString]) -> Result<Self, clap::Error> {
-        let arguments = Self::try_parse_from(words).map_err(|error| with_tip(error, words))?;
+        let matches = Self::command().try_get_matches_from(words);
+        let matches = matches.map_err(|error| with_tip(error, words))?;
+        let mut arguments = Self::from_arg_matches(&matches)?;
+        matches.subcommand_name().unwrap_or_default().clone_into(&mut arguments.name);
+        arguments.voice.json_progress = has_json_progress(&matches);
         // Conflicts of options before the command's name with those behind it are not the parser's.
-        let Voice { is_quiet, verbosity, json_progress, .. } = arguments.voice();
-        let given = [
-            (is_quiet, "--quiet"),
-            (verbosity > 0, "--verbose"),
-            (json_progress, "--json-progress"),
-        ];
+        let Voice { quiet, verbose, json_progress, .. } = arguments.voice;
+        let given =
+            [(quiet, "--quiet"), (verbose > 0, "--verbose"), (json_progress, "--json-progress")];
         let given: Vec<&str> =
             given.into_iter().filter_map(|(is_given, name)| is_given.then_some(name)).collect();
         let [first, second, ..] = given[..] else { return Ok(arguments) };
         let text = format!("the argument '{second}' cannot be used with '{first}'");
         Err(Self::command().error(ErrorKind::ArgumentConflict, text))
-    }
-
-    /// How the program is to talk.
-    pub(crate) fn voice(&self) -> Voice {
-        self.voice.voice(self.command.report().is_some_and(|report| report.json_progress))
     }
 }
 
@@ -120,6 +124,14 @@ fn as_shown(error: clap::Error, words: Vec<OsString>) -> clap::Error {
         let said = said.trim_start_matches("error: ").trim_end();
         Arguments::command().error(error.kind(), one_line(said))
     })
+}
+
+/// Whether `--json-progress` is given, to the command or to the one below it.
+fn has_json_progress(matches: &ArgMatches) -> bool {
+    match matches.subcommand() {
+        Some((_, below)) => has_json_progress(below),
+        None => matches!(matches.try_get_one(JSON_PROGRESS), Ok(Some(true))),
+    }
 }
 
 /// What other programs call a part of the data.
@@ -263,7 +275,7 @@ fn files_in<'a>(
 fn tip_for_caps(error: &clap::Error) -> Option<String> {
     let value = text_of(error, ContextKind::InvalidValue);
     let method =
-        value.strip_suffix("-no-caps").filter(|_| Roads::from_str(&value, false).is_ok())?;
+        value.strip_suffix("-no-caps").filter(|_| ROADS.iter().any(|(word, ..)| *word == value))?;
     let valid = text_of(error, ContextKind::ValidValue);
     let has_method = valid.split(", ").any(|valid| valid == method);
     has_method.then(|| format!("write --roads {method} --caps none; {value} is for fly alone"))
@@ -304,7 +316,8 @@ pub(crate) enum Command {
     /// Dump one decoded tile
     Tile(TileArgs),
     /// Give what a package holds to other programs
-    Export(ExportArgs),
+    #[command(subcommand)]
+    Export(Export),
     /// Draw a package to a PNG, without a window
     Render(RenderArgs),
     /// Fly over a package and tell what each frame costs; needs no window
@@ -320,46 +333,9 @@ pub(crate) enum Command {
 }
 
 impl Command {
-    /// Its name on the command line.
-    pub(crate) fn name(&self) -> &'static str {
-        match self {
-            Self::Build(_) => "build",
-            Self::Plan(_) => "plan",
-            Self::Jobs(_) => "jobs",
-            Self::Part(_) => "part",
-            Self::Merge(_) => "merge",
-            Self::Info(_) => "info",
-            Self::Growth(_) => "growth",
-            Self::Profile(_) => "profile",
-            Self::Match(_) => "match",
-            Self::Verify(_) => "verify",
-            Self::Tile(_) => "tile",
-            Self::Export(_) => "export",
-            Self::Render(_) => "render",
-            Self::Fly(_) => "fly",
-            Self::View(_) => "view",
-            Self::Serve(_) => "serve",
-            Self::Completions(_) => "completions",
-            Self::Man(_) => "man",
-        }
-    }
-
     /// Whether it may ask for a graphics card.
     pub(crate) fn draws(&self) -> bool {
         matches!(self, Self::Render(_) | Self::Fly(_) | Self::View(_))
-    }
-
-    /// How progress is told, by a command that tells it.
-    fn report(&self) -> Option<ReportArgs> {
-        match self {
-            Self::Build(args) => Some(args.report),
-            Self::Part(args) => Some(args.planned.report),
-            Self::Merge(args) => Some(args.planned.report),
-            Self::Verify(args) => Some(args.report),
-            Self::Export(args) => Some(args.what.report()),
-            Self::Match(args) => Some(args.report),
-            _ => None,
-        }
     }
 }
 

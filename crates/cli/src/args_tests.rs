@@ -39,7 +39,7 @@ fn the_options_of_resumed_builds_and_plans_are_understood() {
 /// `-q`, `-v` and `--log-format` are options of every command, before its name and behind it.
 #[test]
 fn every_command_takes_the_options_of_messages() {
-    let parse = |line: String| Arguments::try_parse_from(line.split_whitespace());
+    let parse = |line: String| Arguments::checked_from(line.split_whitespace().map(Into::into));
     let names: Vec<String> = Arguments::command()
         .get_subcommands()
         .map(|command| command.get_name().to_owned())
@@ -61,8 +61,8 @@ fn every_command_takes_the_options_of_messages() {
         _ => "a.pmtiles",
     };
     for name in &names {
-        let quiet = Voice { is_quiet: true, ..Voice::default() };
-        let loud = Voice { verbosity: 2, format: LogFormat::Json, ..Voice::default() };
+        let quiet = Voice { quiet: true, ..Voice::default() };
+        let loud = Voice { verbose: 2, log_format: LogFormat::Json, ..Voice::default() };
         for (line, voice) in [
             (format!("corniche {name} {} -q", rest(name)), quiet),
             (format!("corniche --quiet {name} {}", rest(name)), quiet),
@@ -70,14 +70,14 @@ fn every_command_takes_the_options_of_messages() {
         ] {
             let arguments = parse(line.clone()).unwrap_or_else(|error| panic!("{line}: {error}"));
             assert_eq!(
-                (arguments.voice(), arguments.command.name()),
+                (arguments.voice, arguments.name.as_str()),
                 (voice, name.as_str()),
                 "{line}"
             );
         }
         assert!(parse(format!("corniche {name} {} -q -v", rest(name))).is_err(), "{name}");
     }
-    let told = parse("corniche verify a.pmtiles --json-progress".into()).unwrap().voice();
+    let told = parse("corniche verify a.pmtiles --json-progress".into()).unwrap().voice;
     assert!(told.json_progress);
     assert!(parse("corniche verify a.pmtiles --json-progress -q".into()).is_err());
 }
@@ -113,7 +113,7 @@ fn silence_and_talk_exclude_each_other_on_both_sides_of_the_command() {
 #[test]
 fn the_voice_of_a_line_that_is_not_understood_is_found() {
     let voice = |line: &str| Voice::of_unparsed(line.split(' ').map(Into::into));
-    let json = Voice { format: LogFormat::Json, ..Voice::default() };
+    let json = Voice { log_format: LogFormat::Json, ..Voice::default() };
     let progress = Voice { json_progress: true, ..Voice::default() };
     for (line, expected) in [
         ("info --odd", Voice::default()),
@@ -155,14 +155,14 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         Command::Jobs(args) => args.files().unwrap(),
         Command::Part(args) => args.planned.files().unwrap(),
         Command::Merge(args) => args.planned.files().unwrap(),
-        Command::Export(args) => match &args.what {
+        Command::Export(what) => match what {
             Export::GeoTiff(args) => measured(&args.from, &[]),
-            Export::Roads(args) => measured(&args.from, &args.extract.osm),
+            Export::Roads(args) => measured(&args.vector.from, &args.vector.extract.osm),
             Export::Boundaries(args) => {
                 let (package, osm) = args.files().unwrap();
                 (path_of(package), osm)
             }
-            Export::Edges(args) => measured(&args.from, &args.extract.osm),
+            Export::Edges(args) => measured(&args.vector.from, &args.vector.extract.osm),
             what => panic!("{what:?} has no files to tell apart"),
         },
         Command::Match(args) => {
@@ -170,8 +170,8 @@ fn options_with_several_values_leave_positional_arguments_alone() {
             (path_of(package), photos)
         }
         Command::Verify(args) => {
-            let files = args.files().unwrap();
-            (path_of(files.package), [files.dem, files.photo, files.osm].concat())
+            let (package, files) = args.files().unwrap();
+            (path_of(package), files.concat())
         }
         _ => panic!("{arguments:?} has no files to tell apart"),
     };
@@ -261,8 +261,8 @@ fn verify_finds_its_package_wherever_it_is_named() {
         let arguments =
             Arguments::try_parse_from(line.split(' ')).map_err(|error| error.to_string())?;
         let Command::Verify(args) = arguments.command else { panic!("{line}") };
-        let files = args.files().map_err(|failure| failure.to_string())?;
-        Ok::<_, String>((path_of(files.package), files.dem, files.osm))
+        let (package, [dem, _, osm]) = args.files().map_err(|failure| failure.to_string())?;
+        Ok::<_, String>((path_of(package), dem, osm))
     };
     let expected = Ok(("p.pmtiles".into(), vec!["a.tif".into(), "b.tif".into()], Vec::new()));
     for line in [

@@ -61,7 +61,7 @@ pub(crate) fn finish(
     let summary = built?;
     listed?;
     let BuildSummary { manifest, package_bytes } = summary;
-    for warning in info::warnings(&manifest) {
+    if let Some(warning) = info::odd_heights(&manifest) {
         messages::warning(&warning);
     }
     if messages::is_for_people() {

@@ -19,6 +19,7 @@ pub(crate) struct Axes {
     pub(crate) size_px: (u32, u32),
     pub(crate) caption: String,
     pub(crate) x: Axis,
+    /// It has round places or counts.
     pub(crate) y: Axis,
 }
 
@@ -169,14 +170,8 @@ fn draw_curves(
             mesh.x_labels(count).x_label_formatter(&tick_x).x_max_light_lines(0);
         }
     }
-    match axes.y.ticks {
-        Ticks::Round => {}
-        Ticks::Counts => {
-            mesh.y_label_formatter(&tick_y);
-        }
-        Ticks::Whole(count) | Ticks::Doubled { count, .. } => {
-            mesh.y_labels(count).y_label_formatter(&tick_y).y_max_light_lines(0);
-        }
+    if axes.y.ticks == Ticks::Counts {
+        mesh.y_label_formatter(&tick_y);
     }
     mesh.draw()?;
     // Wide lines lie below narrow ones, which they would hide.

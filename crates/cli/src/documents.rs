@@ -38,6 +38,9 @@ pub(crate) fn write_line_to(out: impl Write, document: &impl Serialize) -> io::R
 }
 
 #[cfg(test)]
+#[path = "documents/info_schema_tests.rs"]
+mod info_schema;
+#[cfg(test)]
 #[path = "documents/record_schemas_tests.rs"]
 mod record_schemas;
 #[cfg(test)]

@@ -13,7 +13,6 @@ use corniche_viewer::tiles::{MapPackage as _, PackageSource, TileStore};
 use corniche_window::{DrawnLine, NotSaved, SaveDrawing};
 
 use crate::{
-    exit::ExitCode,
     failure::Failure,
     messages,
     output::{Existing, Output},
@@ -155,7 +154,7 @@ fn heights_of(
     let mut heights_m = Vec::new();
     for &point_deg in &line.points_deg {
         let Some(at_m) = coordinates.working_from_wgs84(point_deg) else { return Ok(None) };
-        let Some(height_m) = store.ground_height_m(at_m).map_err(unreadable)? else {
+        let Some(height_m) = store.ground_height_m(at_m)? else {
             return Ok(None);
         };
         positions_m.push(at_m);
@@ -166,10 +165,6 @@ fn heights_of(
 
 fn without_heights(failure: &Failure) {
     messages::note(&format!("note: lines are saved without heights: {failure}"));
-}
-
-fn unreadable(error: corniche_viewer::tiles::LoadTileError) -> Failure {
-    Failure::new(ExitCode::Unusable, error)
 }
 
 fn free_name(folder: &Path) -> Result<PathBuf, Failure> {

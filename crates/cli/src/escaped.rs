@@ -2,7 +2,6 @@
 
 use std::{
     borrow::Cow,
-    fmt::Write as _,
     io::{self, Write},
 };
 
@@ -10,9 +9,7 @@ use corniche_export::is_unseen;
 
 /// The text with what does something written out, as in `\u{1b}`.
 pub(crate) fn for_people(text: &str) -> Cow<'_, str> {
-    replaced(text, is_unseen, |out, character| {
-        let _ = write!(out, "{}", character.escape_unicode());
-    })
+    replaced(text, is_unseen, |character| character.escape_unicode().to_string())
 }
 
 /// Most characters that are shown of a value of others. Documents for programs have all of them.
@@ -34,9 +31,7 @@ pub(crate) fn line_within(text: &str, most: usize) -> Cow<'_, str> {
 /// A text as one line: line breaks are written out, too, so that none of it can pass for another line.
 pub(crate) fn one_line(text: &str) -> Cow<'_, str> {
     let breaks = |character| is_unseen(character) || matches!(character, '\n' | '\t');
-    replaced(text, breaks, |out, character| {
-        let _ = write!(out, "{}", character.escape_unicode());
-    })
+    replaced(text, breaks, |character| character.escape_unicode().to_string())
 }
 
 /// A text of at most so many characters; what is left out is told by an ellipsis.
@@ -51,9 +46,7 @@ pub(crate) fn shortened(text: &str, most: usize) -> Cow<'_, str> {
 ///
 /// Such characters can only stand within texts, and all of them have four digits.
 pub(crate) fn in_json(document: &str) -> Cow<'_, str> {
-    replaced(document, is_unseen, |out, character| {
-        let _ = write!(out, "\\u{:04x}", u32::from(character));
-    })
+    replaced(document, is_unseen, |character| format!("\\u{:04x}", u32::from(character)))
 }
 
 /// Writes JSON whose texts are as those of [`in_json`].
@@ -72,14 +65,18 @@ impl serde_json::ser::Formatter for JsonTexts {
 fn replaced(
     text: &str,
     is_written_out: impl Fn(char) -> bool,
-    write: impl Fn(&mut String, char),
+    written: impl Fn(char) -> String,
 ) -> Cow<'_, str> {
     if !text.contains(&is_written_out) {
         return Cow::Borrowed(text);
     }
     let mut out = String::with_capacity(text.len() + 16);
     for character in text.chars() {
-        if is_written_out(character) { write(&mut out, character) } else { out.push(character) }
+        if is_written_out(character) {
+            out.push_str(&written(character));
+        } else {
+            out.push(character);
+        }
     }
     Cow::Owned(out)
 }

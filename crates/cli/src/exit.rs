@@ -6,27 +6,21 @@ use std::process;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ExitCode {
     /// The command did all that it was asked to do.
-    Done,
+    Done = 0,
     /// Processing failed; for `verify`, a promise is broken.
-    Failed,
+    Failed = 1,
     /// Wrong usage or unusable input.
-    Unusable,
+    Unusable = 2,
     /// The target exists.
-    Exists,
+    Exists = 3,
     /// A signal ended the run.
-    Interrupted,
+    Interrupted = 4,
 }
 
 impl ExitCode {
     /// What the system is told.
     pub(crate) const fn number(self) -> u8 {
-        match self {
-            Self::Done => 0,
-            Self::Failed => 1,
-            Self::Unusable => 2,
-            Self::Exists => 3,
-            Self::Interrupted => 4,
-        }
+        self as u8
     }
 
     /// Its name for programs.

@@ -17,11 +17,9 @@ use corniche_remote::PackagePlace;
 use corniche_tileset::{FilePackage, Manifest};
 
 pub(crate) use self::vector_files::MEMORY_BYTES;
-use self::vector_files::{coordinates, crs_text, fill, format};
+use self::vector_files::{coordinates, crs_text, fill, format, tell};
 use crate::{
-    args::{Export, ExportAreasArgs, ExportArgs, ExportBoundariesArgs, FileArgs, InPlanArgs},
-    credits::credits_line,
-    escaped::in_line,
+    args::{Export, ExportAreasArgs, ExportBoundariesArgs, FileArgs, InPlanArgs},
     exit::ExitCode,
     failure::Failure,
     messages,
@@ -29,11 +27,11 @@ use crate::{
     packages,
     progress::Progress,
     recorded,
-    table::{Digits, bytes, length},
+    table::{bytes, length, noted},
 };
 
-pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
-    match &args.what {
+pub(crate) fn run(what: &Export) -> Result<ExitCode, Failure> {
+    match what {
         Export::Roads(args) => roads::run(args),
         Export::Edges(args) => edges::run(args),
         Export::Areas(args) => areas(args),
@@ -59,14 +57,13 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
             summary.unjoined
         ));
     }
-    let count = |number| Digits::of_notes().count(number);
     let what = format!(
         "{} areas of level {}, {:.3} km², {} polygons, {} points",
-        count(summary.areas),
+        noted(summary.areas),
         summary.level,
         summary.area_m2 / 1e6,
-        count(summary.polygons),
-        count(summary.points),
+        noted(summary.polygons),
+        noted(summary.points),
     );
     note_plan(plan, &request, &what, (package.manifest(), size));
     Ok(ExitCode::Done)
@@ -82,14 +79,13 @@ fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
         export_lines(&package, (layer, names.as_ref()), &request, path, progress)
     };
     let (summary, size) = write(&plan.file, name, place.name(), export)?;
-    let count = |number| Digits::of_notes().count(number);
     let what = format!(
         "{} ways of level {}, {}, {} lines, {} points",
-        count(summary.ways),
+        noted(summary.ways),
         summary.level,
         length((summary.length_m * 1e6).round() as u64),
-        count(summary.lines),
-        count(summary.points),
+        noted(summary.lines),
+        noted(summary.points),
     );
     note_plan(plan, &request, &what, (package.manifest(), size));
     Ok(ExitCode::Done)
@@ -132,11 +128,7 @@ fn note_plan<C>(
     what: &str,
     (manifest, size): (&Manifest, u64),
 ) {
-    messages::summary(&format!(
-        "{}: {what}, {}\ncoordinates: {}{}",
-        in_line(&args.file.output.to_string_lossy()),
-        bytes(size),
-        crs_text(request.coordinates, request.format, manifest),
-        credits_line(manifest),
-    ));
+    let coordinates = crs_text(request.coordinates, request.format, manifest);
+    let what = format!("{what}, {}\ncoordinates: {coordinates}", bytes(size));
+    tell(&args.file.output, &what, manifest);
 }

@@ -8,12 +8,15 @@ use corniche_export::{
 };
 use corniche_ground::TerrainError;
 use corniche_matching::MatchError;
+use corniche_overlay::OverlayError;
 use corniche_pipeline::BuildError;
 use corniche_plan::{PlanError, PlanFileError};
+use corniche_serve::ServeError;
 use corniche_spec::{ExtractBoundsError, inputs::InputError};
 use corniche_tileset::{OpenError, ReadError, SourceError};
 use corniche_verify::VerifyError;
-use corniche_viewer::gpu::GpuError;
+use corniche_viewer::{gpu::GpuError, tiles::LoadTileError};
+use corniche_window::WindowError;
 
 use crate::exit::ExitCode;
 
@@ -32,6 +35,11 @@ impl Failure {
     /// Wrong usage or unusable input, with a text for the user.
     pub(crate) fn unusable(message: impl fmt::Display) -> Self {
         Self::new(ExitCode::Unusable, anyhow::anyhow!("{message}"))
+    }
+
+    /// Something failed, with a text for the user.
+    pub(crate) fn failed(message: impl fmt::Display) -> Self {
+        Self::new(ExitCode::Failed, anyhow::anyhow!("{message}"))
     }
 
     /// The same, with the file that it is about in front.
@@ -95,16 +103,63 @@ impl fmt::Display for Failure {
     }
 }
 
-impl From<BuildError> for Failure {
-    fn from(error: BuildError) -> Self {
-        let code = match &error {
-            BuildError::Exists { .. } => ExitCode::Exists,
-            BuildError::Interrupted => ExitCode::Interrupted,
-            other if other.is_unusable_input() => ExitCode::Unusable,
-            _ => ExitCode::Failed,
-        };
-        Self::new(code, error)
+/// Errors with the codes that they end with.
+macro_rules! codes {
+    ($($error:ty { $($case:pat $(if $condition:expr)? => $code:ident,)* })*) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                let code = match &error {
+                    $($case $(if $condition)? => ExitCode::$code,)*
+                };
+                Self::new(code, error)
+            }
+        }
+    )*};
+}
+
+codes! {
+    BuildError {
+        BuildError::Exists { .. } => Exists,
+        BuildError::Interrupted => Interrupted,
+        other if other.is_unusable_input() => Unusable,
+        _ => Failed,
     }
+    VerifyError {
+        VerifyError::Interrupted => Interrupted,
+        VerifyError::Changed { .. } | VerifyError::Work(_) => Failed,
+        VerifyError::Extract(error) if !error.is_unusable_input() => Failed,
+        VerifyError::Ground(error) if !error.is_unusable_input() => Failed,
+        VerifyError::Kept(error) if !error.is_unusable_input() => Failed,
+        VerifyError::Setup(error) if !error.is_unusable_input() => Failed,
+        _ => Unusable,
+    }
+    MatchError {
+        MatchError::Interrupted => Interrupted,
+        _ => Unusable,
+    }
+    ServeError {
+        ServeError::NoAddress { .. } => Unusable,
+        _ => Failed,
+    }
+    WindowError {
+        WindowError::Load(_)
+        | WindowError::NoGround { .. }
+        | WindowError::OverBudget { .. }
+        | WindowError::OffGround(_)
+        | WindowError::Range(_)
+        | WindowError::NoStyle
+        | WindowError::Trace { .. } => Unusable,
+        _ => Failed,
+    }
+    CoordinatesError { _ => Unusable, }
+    DatumError { _ => Unusable, }
+    ExtractBoundsError { _ => Unusable, }
+    LoadTileError { _ => Unusable, }
+    OpenError { _ => Unusable, }
+    OverlayError { _ => Unusable, }
+    ReadError { _ => Unusable, }
+    GdalFileError { _ => Failed, }
+    io::Error { _ => Failed, }
 }
 
 /// What a build may fail with fails the same way outside one.
@@ -120,74 +175,21 @@ macro_rules! as_of_a_build {
 
 as_of_a_build!(InputError, PlanError, PlanFileError, TerrainError);
 
-impl From<ExtractBoundsError> for Failure {
-    fn from(error: ExtractBoundsError) -> Self {
-        Self::new(ExitCode::Unusable, error)
-    }
-}
-
-impl From<VerifyError> for Failure {
-    fn from(error: VerifyError) -> Self {
-        let code = match &error {
-            VerifyError::Interrupted => ExitCode::Interrupted,
-            VerifyError::Changed { .. } | VerifyError::Work(_) => ExitCode::Failed,
-            VerifyError::Extract(error) if !error.is_unusable_input() => ExitCode::Failed,
-            VerifyError::Ground(error) if !error.is_unusable_input() => ExitCode::Failed,
-            VerifyError::Kept(error) if !error.is_unusable_input() => ExitCode::Failed,
-            VerifyError::Setup(error) if !error.is_unusable_input() => ExitCode::Failed,
-            _ => ExitCode::Unusable,
-        };
-        Self::new(code, error)
-    }
-}
-
-impl From<MatchError> for Failure {
-    fn from(error: MatchError) -> Self {
-        let code = match &error {
-            MatchError::Interrupted => ExitCode::Interrupted,
-            _ => ExitCode::Unusable,
-        };
-        Self::new(code, error)
-    }
-}
-
 /// What exports end with, by the kind of their errors.
 macro_rules! exports {
-    ($($error:ident)*) => {$(
-        impl From<$error> for Failure {
-            fn from(error: $error) -> Self {
-                let code = match error.kind() {
-                    ErrorKind::Unusable => ExitCode::Unusable,
-                    ErrorKind::Failed => ExitCode::Failed,
-                    ErrorKind::Interrupted => ExitCode::Interrupted,
-                };
-                Self::new(code, error)
+    ($($error:ident)*) => {
+        codes! {$(
+            $error {
+                error if error.kind() == ErrorKind::Unusable => Unusable,
+                error if error.kind() == ErrorKind::Interrupted => Interrupted,
+                _ => Failed,
             }
-        }
-    )*};
+        )*}
+    };
 }
 
 exports! {
     FeaturesError RouteError ProfileError MeshError Tiles3dError QuantizedMeshError RasterError
-}
-
-/// Errors that always end with one code.
-macro_rules! always {
-    ($($code:ident: $error:ty;)*) => {$(
-        impl From<$error> for Failure {
-            fn from(error: $error) -> Self {
-                Self::new(ExitCode::$code, error)
-            }
-        }
-    )*};
-}
-
-always! {
-    Unusable: OpenError;
-    Unusable: CoordinatesError;
-    Unusable: DatumError;
-    Failed: GdalFileError;
-    Failed: io::Error;
 }
 
 impl From<GpuError> for Failure {

@@ -21,7 +21,7 @@ use image::RgbaImage;
 
 use self::{measured_run::MeasuredRun, outputs::Outputs};
 use crate::{
-    args::{FlyArgs, Lod, Roads},
+    args::{FlyArgs, Roads},
     exit::ExitCode,
     failure::Failure,
     interrupt, messages, overlays, packages, presets,
@@ -51,8 +51,7 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let overlays = overlays::load(&args.look, package.manifest())?;
     let (flown, methods) = (&flight, &methods);
     let plan = Plan { args, flight: flown, style: &style, methods, outputs: &outputs, overlays };
-    let Drawn { runs, adapter } =
-        if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
+    let (runs, adapter) = if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
     outputs.finish(&flight, WorkingCrs::of(package.manifest()), &runs, &adapter)?;
     let point_scale = package.manifest().point_scale;
@@ -80,32 +79,6 @@ fn flight(args: &FlyArgs, package: &dyn BlockingPackage) -> Result<Flight, Failu
         .map_err(|error| unusable(&error))
 }
 
-fn options(
-    args: &FlyArgs,
-    flight: &Flight,
-    style: &Style,
-    lod: Lod,
-    roads: Roads,
-) -> Result<ReplayOptions, Failure> {
-    Ok(ReplayOptions {
-        size_px: args.drawing.size,
-        roads: args.look.road_options(roads),
-        detail: match lod {
-            Lod::Full => Detail::Full,
-            Lod::Culled => Detail::Culled,
-            Lod::Adaptive => Detail::Adaptive,
-        },
-        screen_space_error_px: args.drawing.ground.screen_space_error,
-        cell_px: args.drawing.ground.cell_px,
-        exaggeration: args.drawing.ground.exaggeration,
-        supersampling: args.drawing.supersampling,
-        style: style.clone(),
-        budget: args.drawing.gpu.budget(),
-        ahead_s: args.drawing.ahead,
-        frames: frames(args, flight)?,
-    })
-}
-
 /// All flights that are asked for.
 struct Plan<'a> {
     args: &'a FlyArgs,
@@ -116,24 +89,13 @@ struct Plan<'a> {
     overlays: Arc<Overlays>,
 }
 
-/// What came of them.
-struct Drawn {
-    runs: Vec<MeasuredRun>,
-    adapter: String,
-}
+/// What came of them, and what drew them.
+type Drawn = (Vec<MeasuredRun>, String);
 
 /// A window that shows frames while they are drawn.
 struct Watcher<'a> {
     window: SyncSender<RgbaImage>,
     is_gone: &'a AtomicBool,
-}
-
-impl Watcher<'_> {
-    fn show(&self, replay: &Replay<'_>) -> Result<(), Failure> {
-        // Sending fails only when the window is closed or lost; `is_gone` then ends the flight or lets it go on.
-        let _ = self.window.send(replay.picture()?);
-        Ok(())
-    }
 }
 
 impl Plan<'_> {
@@ -187,17 +149,30 @@ impl Plan<'_> {
                 runs.push(self.fly_once(&gpu, watcher, lod, roads)?);
             }
         }
-        Ok(Drawn { runs, adapter: gpu.adapter_name().to_owned() })
+        Ok((runs, gpu.adapter_name().to_owned()))
     }
 
     fn fly_once(
         &self,
         gpu: &Gpu,
         watcher: Option<&Watcher<'_>>,
-        lod: Lod,
+        lod: Detail,
         roads: Roads,
     ) -> Result<MeasuredRun, Failure> {
-        let options = options(self.args, self.flight, self.style, lod, roads)?;
+        let drawing = &self.args.drawing;
+        let options = ReplayOptions {
+            size_px: drawing.size,
+            roads: self.args.look.road_options(roads),
+            detail: lod,
+            screen_space_error_px: drawing.ground.screen_space_error,
+            cell_px: drawing.ground.cell_px,
+            exaggeration: drawing.ground.exaggeration,
+            supersampling: drawing.supersampling,
+            style: self.style.clone(),
+            budget: drawing.gpu.budget(),
+            ahead_s: drawing.ahead,
+            frames: frames(self.args, self.flight)?,
+        };
         let package = packages::source(&self.args.from.package)?
             .for_look(options.roads.method, &options.style);
         let package = package.with_overlays(Arc::clone(&self.overlays));
@@ -206,23 +181,23 @@ impl Plan<'_> {
             is_gone || interrupt::is_noted()
         };
         let mut replay = Replay::new(gpu, &package, self.flight, &options, &is_stopped)?;
+        let mut run = MeasuredRun { lod, roads, frames: Vec::new() };
         let Lifted { frames, most_m } = replay.lifted();
         if frames > 0 {
             messages::note(&format!(
-                "note: {}, roads {}: in {frames} frames the eye was lifted off the ground, by up to {most_m:.1} m",
-                lod.word(),
-                roads.word()
+                "note: {}: in {frames} frames the eye was lifted off the ground, by up to {most_m:.1} m",
+                run.name()
             ));
         }
-        let mut run = MeasuredRun { lod, roads, frames: Vec::new() };
         messages::note(&format!("flying {}", run.name()));
         let progress = Progress::new();
         progress.begin(Stage::Fly, Some(options.frames.into()));
         while let Some(record) = replay.next_frame()? {
-            let name = format!("{}-{}-{:05}.png", lod.word(), roads.word(), record.frame);
+            let name = format!("{}-{:05}.png", run.words().join("-"), record.frame);
             self.outputs.add_picture(&name, &replay)?;
             if let Some(watcher) = watcher {
-                watcher.show(&replay)?;
+                // It fails only when the window is closed or lost; `is_gone` then ends the flight or lets it go on.
+                let _ = watcher.window.send(replay.picture()?);
             }
             run.frames.push(record);
             progress.advance(Stage::Fly, 1);

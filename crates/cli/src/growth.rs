@@ -71,7 +71,7 @@ fn write_files(
         ));
     }
     let inputs: Vec<&Path> = args.packages.iter().map(PackagePlace::name).collect();
-    let list = ("--per-way", args.per_way.as_deref());
+    let list = [("--per-way", args.per_way.as_deref())];
     // Both places are looked at before any work is done.
     let files =
         ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing_of(args.overwrite))?;
@@ -83,7 +83,7 @@ fn write_files(
         svg.map_err(|error| Failure::new(ExitCode::Failed, error))
     };
     let mut told = None;
-    let fill_list = |output: Output| {
+    let fill_list = |_, output: Output| {
         // There is a list of one package alone, which was looked at.
         let path = args.per_way.as_deref().unwrap_or(Path::new(""));
         let (list, note) = per_way::fill(&packages[0], path, output)?;

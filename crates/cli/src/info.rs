@@ -31,7 +31,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     let package = packages::open(&args.from.package)?;
     if args.json {
         let tiles: Vec<String> = package.tile_ids()?.iter().map(ToString::to_string).collect();
-        let document = InfoDocument { manifest: package.manifest().into(), tiles };
+        let document = InfoDocument { manifest: package.manifest(), tiles };
         messages::answer_document(&document)?;
     } else {
         let size = package.bytes()?;
@@ -85,7 +85,7 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     for found in &manifest.datum_operations {
         say(format!("positions    {}", datum_operation(found)));
     }
-    for warning in warnings(manifest) {
+    if let Some(warning) = odd_heights(manifest) {
         say(format!("warning: {warning}"));
     }
     let samples = &manifest.counts.samples;
@@ -242,8 +242,7 @@ fn photos(manifest: &Manifest, digits: Digits) -> Table {
     let finest = manifest.frame.max_level();
     for level in &manifest.photos {
         let cell = manifest.frame.level_cell(level.level);
-        let levels = manifest.settings.photo.map_or(0, |photo| photo.levels);
-        let finer = if level.level == finest { levels } else { levels.min(1) };
+        let finer = manifest.settings.photo.map_or(0, |of| of.levels_on(level.level, finest));
         let scale = f64::from(1_u32 << finer);
         let texel = Cell { east_m: cell.east_m / scale, north_m: cell.north_m / scale };
         let tile_km2 = cell.east_m * cell.north_m * 65_536.0 / manifest.point_scale.powi(2) / 1e6;
@@ -369,17 +368,12 @@ pub(crate) fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
 }
 
-/// What may be wrong with a package and should be seen, also where little else is told.
-pub(crate) fn warnings(manifest: &Manifest) -> Vec<String> {
-    odd_heights(manifest).into_iter().collect()
-}
-
 /// What heights tell of an undeclared "no data": no land or sea floor lies so low or so high.
 ///
 /// Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
 /// What was said to be allowed is not odd. A build refuses samples outside; what remains comes of a shift or of another
 /// vertical CRS, or of an older package.
-fn odd_heights(manifest: &Manifest) -> Option<String> {
+pub(crate) fn odd_heights(manifest: &Manifest) -> Option<String> {
     const PLAUSIBLE_M: [f64; 2] = [-12_000.0, 9_500.0];
     let [lowest_m, highest_m] = manifest.vertical.range_m;
     let plausible_m = manifest.settings.height_range_m.map_or(PLAUSIBLE_M, |[low_m, high_m]| {

@@ -86,12 +86,9 @@ pub(crate) fn explain(failure: Failure) -> Failure {
 /// Why the program ends early.
 fn reason() -> Failure {
     match CAUSE.get() {
-        Some(Cause::ParentGone) => Failure::new(
-            ExitCode::Failed,
-            anyhow::anyhow!(
-                "standard input has ended, so the process that started this one is gone (--die-with-parent); what was done of \
-                 a part is kept, and the same command goes on from there"
-            ),
+        Some(Cause::ParentGone) => Failure::failed(
+            "standard input has ended, so the process that started this one is gone (--die-with-parent); what was done of \
+             a part is kept, and the same command goes on from there",
         ),
         Some(Cause::Signal) | None => Failure::interrupted(),
     }

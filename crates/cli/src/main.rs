@@ -69,11 +69,11 @@ fn main() -> process::ExitCode {
     if arguments.command.draws() {
         quiet_libraries::begin();
     }
-    messages::begin(arguments.voice());
-    let _span = tracing::info_span!("corniche", command = arguments.command.name()).entered();
+    messages::begin(arguments.voice);
+    let _span = tracing::info_span!("corniche", command = arguments.name).entered();
     tracing::debug!(
         version = env!("CARGO_PKG_VERSION"),
-        libraries = version::libraries(),
+        libraries = corniche_gis::libraries(),
         "begins"
     );
     let (code, failure) = match run(arguments) {
@@ -91,7 +91,7 @@ fn main() -> process::ExitCode {
 /// Help and version are answers, not errors; clap knows which stream each belongs on.
 fn answer(error: &clap::Error) -> ExitCode {
     let voice = Voice::of_unparsed(env::args_os().skip(1));
-    if error.use_stderr() && (voice.json_progress || voice.format == LogFormat::Json) {
+    if error.use_stderr() && (voice.json_progress || voice.log_format == LogFormat::Json) {
         messages::begin(voice);
         messages::ended(ExitCode::Unusable, Some(&Failure::unusable(refusal(error))));
         return ExitCode::Unusable;

@@ -25,7 +25,7 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
     let manifest = package.manifest();
     let photos = corniche_spec::inputs::photo_names(&photos)?;
     let inputs: Vec<&Path> = photos.iter().map(AsRef::as_ref).chain([place.name()]).collect();
-    let list = ("--csv", args.csv.as_deref());
+    let list = [("--csv", args.csv.as_deref())];
     // Both places are looked at before any work is done.
     let files =
         ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing_of(args.overwrite))?;
@@ -34,9 +34,11 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
         radius_m: args.radius,
         region_m: args.region,
     };
-    let progress = Progress::new();
+    let compare = |target: &Target<'_>| {
+        Progress::of(|progress| match_roads(&package, target, &request, progress))
+    };
     let report = if args.slope {
-        match_roads(&package, &Target::Slope, &request, &progress)
+        compare(&Target::Slope)?
     } else {
         let opened = Photos::open(&photos).map_err(MatchError::from)?;
         let grid = corniche_ground::terrain::recorded_grid::grid_of(manifest)
@@ -44,12 +46,10 @@ pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
         let datums = grid.datums_of_rasters(opened.rasters()).allowed(args.allow_ballpark);
         let datums = datums.map_err(|error| Failure::new(ExitCode::Unusable, error))?;
         datums.warnings().for_each(|text| messages::warning(&text));
-        match_roads(&package, &Target::Photos(&opened, &grid), &request, &progress)
+        compare(&Target::Photos(&opened, &grid))?
     };
-    progress.finish();
-    let report = report?;
     files.write(
-        |output| output.fill(report::to_csv(&report).as_bytes()),
+        |_, output| output.fill(report::to_csv(&report).as_bytes()),
         || Ok(map::to_svg(&report, manifest)),
     )?;
     let text = report::to_text(&report, manifest, Digits::of_answers());

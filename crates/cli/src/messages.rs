@@ -52,7 +52,7 @@ pub(crate) fn begin(voice: Voice) {
         .with_default(libraries);
     let layer = fmt::layer().with_writer(|| Tolerant).with_ansi(false).log_internal_errors(false);
     // It can fail only if someone else was first, and nobody else is in this program.
-    let _ = match voice.format {
+    let _ = match voice.log_format {
         LogFormat::Text => tracing_subscriber::registry()
             .with(layer.event_format(Lines).with_filter(shown))
             .try_init(),
@@ -67,9 +67,9 @@ fn levels(voice: Voice) -> (LevelFilter, LevelFilter) {
     match voice {
         // Records of progress have their own form, and nothing comes between them.
         Voice { json_progress: true, .. } => (LevelFilter::OFF, LevelFilter::OFF),
-        Voice { is_quiet: true, .. } => (LevelFilter::WARN, LevelFilter::OFF),
-        Voice { verbosity: 0, .. } => (LevelFilter::INFO, LevelFilter::OFF),
-        Voice { verbosity: 1, .. } => (LevelFilter::DEBUG, LevelFilter::WARN),
+        Voice { quiet: true, .. } => (LevelFilter::WARN, LevelFilter::OFF),
+        Voice { verbose: 0, .. } => (LevelFilter::INFO, LevelFilter::OFF),
+        Voice { verbose: 1, .. } => (LevelFilter::DEBUG, LevelFilter::WARN),
         Voice { .. } => (LevelFilter::TRACE, LevelFilter::DEBUG),
     }
 }
@@ -81,13 +81,13 @@ pub(crate) fn voice() -> Voice {
 
 /// Whether texts of several lines are for people who read along: neither silence nor records were asked for.
 pub(crate) fn is_for_people() -> bool {
-    let Voice { is_quiet, format, json_progress, .. } = voice();
-    !is_quiet && !json_progress && format == LogFormat::Text
+    let Voice { quiet, log_format, json_progress, .. } = voice();
+    !quiet && !json_progress && log_format == LogFormat::Text
 }
 
 /// Whether people who read along want more than what matters most (`-v`).
 pub(crate) fn is_detailed() -> bool {
-    is_for_people() && voice().verbosity > 0
+    is_for_people() && voice().verbose > 0
 }
 
 /// Something good to know, in one line.
@@ -107,7 +107,7 @@ const MOST_SAID: usize = 8000;
 
 /// A message of one line. Records for programs hold it as it is.
 fn line(text: &str) -> Cow<'_, str> {
-    match voice().format {
+    match voice().log_format {
         LogFormat::Text => line_within(text, MOST_SAID),
         LogFormat::Json => Cow::Borrowed(text),
     }
@@ -187,7 +187,7 @@ impl Write for Tolerant {
         // The library writes an event at once, so no character comes in two pieces. Whoever wrote the text, a library or a server that redirects.
         let text = String::from_utf8_lossy(bytes);
         let text = without_secrets(&text);
-        let text = match voice().format {
+        let text = match voice().log_format {
             LogFormat::Text => for_people(&text),
             LogFormat::Json => in_json(&text),
         };

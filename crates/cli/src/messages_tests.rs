@@ -45,7 +45,7 @@ fn talk() {
 
 #[test]
 fn lines_are_for_people_and_details_have_spans_and_fields() {
-    let loud = said(Voice { verbosity: 2, ..Voice::default() }, talk);
+    let loud = said(Voice { verbose: 2, ..Voice::default() }, talk);
     let lines: Vec<&str> = loud.lines().collect();
     assert_eq!(
         lines,
@@ -63,10 +63,10 @@ fn lines_are_for_people_and_details_have_spans_and_fields() {
 
 #[test]
 fn each_voice_says_more_than_the_one_before() {
-    let quiet = Voice { is_quiet: true, ..Voice::default() };
+    let quiet = Voice { quiet: true, ..Voice::default() };
     let count = |voice| said(voice, talk).lines().count();
     assert_eq!(count(quiet), 2);
     assert_eq!(count(Voice::default()), 3);
-    assert_eq!(count(Voice { verbosity: 1, ..Voice::default() }), 5);
-    assert_eq!(count(Voice { verbosity: 2, ..Voice::default() }), 7);
+    assert_eq!(count(Voice { verbose: 1, ..Voice::default() }), 5);
+    assert_eq!(count(Voice { verbose: 2, ..Voice::default() }), 7);
 }

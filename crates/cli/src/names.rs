@@ -55,45 +55,37 @@ pub(crate) fn is_package_name(path: &Path) -> bool {
 }
 
 /// What has one format, so that a name with the ending of another one is a mistake.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Format {
-    /// A picture (PNG).
-    Picture,
-    /// A picture that knows its place (`GeoTIFF`).
-    Map,
-    /// A chart (SVG).
-    Chart,
+pub(crate) struct Format {
+    /// What it is in a message.
+    what: &'static str,
+    /// The endings of its names, the usual one first.
+    endings: &'static [&'static str],
 }
+
+/// A picture.
+pub(crate) const PICTURE: Format = Format { what: "pictures are PNG", endings: &["png"] };
+/// A picture that knows its place.
+pub(crate) const MAP: Format = Format { what: "maps are GeoTIFF", endings: &["tif", "tiff"] };
+/// A chart.
+pub(crate) const CHART: Format = Format { what: "charts are SVG", endings: &["svg"] };
 
 impl Format {
     /// Whether a name has an ending of this format.
-    pub(crate) fn is_of(self, path: &Path) -> bool {
-        let (_, endings) = self.words();
-        let has = |ending: &&str| {
-            path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
-        };
-        endings.iter().any(has)
+    pub(crate) fn is_of(&self, path: &Path) -> bool {
+        let extension = path.extension().unwrap_or_default();
+        self.endings.iter().any(|ending| extension.eq_ignore_ascii_case(ending))
     }
 
     /// Refuses a name that ends as that of another format.
-    pub(crate) fn refuse_others(self, path: &Path) -> Result<(), Failure> {
+    pub(crate) fn refuse_others(&self, path: &Path) -> Result<(), Failure> {
         if self.is_of(path) {
             return Ok(());
         }
-        let (what, endings) = self.words();
+        let Self { what, endings } = self;
         Err(Failure::unusable(format!(
             "cannot write {}: {what}; give a name that ends in .{}",
             path.display(),
             endings[0]
         )))
-    }
-
-    /// What it is in a message, and the endings of its names, the usual one first.
-    const fn words(self) -> (&'static str, &'static [&'static str]) {
-        match self {
-            Self::Picture => ("pictures are PNG", &["png"]),
-            Self::Map => ("maps are GeoTIFF", &["tif", "tiff"]),
-            Self::Chart => ("charts are SVG", &["svg"]),
-        }
     }
 }

@@ -151,14 +151,8 @@ pub(crate) fn png(picture: &RgbaImage) -> Result<Vec<u8>, Failure> {
 }
 
 pub(crate) fn failed(target: &Path, error: &io::Error) -> Failure {
-    Failure::new(
-        ExitCode::Failed,
-        anyhow::anyhow!(
-            "cannot write {}{}: {error}",
-            target.display(),
-            LackOfRoom::advice(LackOfRoom::of(error))
-        ),
-    )
+    let advice = LackOfRoom::advice(LackOfRoom::of(error));
+    Failure::failed(format!("cannot write {}{advice}: {error}", target.display()))
 }
 
 /// The failure of a command whose target exists.

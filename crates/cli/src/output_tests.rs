@@ -46,22 +46,19 @@ fn names_that_mean_no_file_are_refused_with_a_way_out() {
 
 #[test]
 fn pictures_and_charts_are_called_so() {
-    use names::Format;
+    use names::{CHART, Format, PICTURE};
 
     let known = |format: Format, name: &str| format.refuse_others(Path::new(name));
-    for (format, name) in [
-        (Format::Picture, "a.png"),
-        (Format::Picture, "a.PNG"),
-        (Format::Chart, "a.svg"),
-        (Format::Chart, "old.png.SVG"),
-    ] {
+    for (format, name) in
+        [(PICTURE, "a.png"), (PICTURE, "a.PNG"), (CHART, "a.svg"), (CHART, "old.png.SVG")]
+    {
         assert!(known(format, name).is_ok(), "{name}");
     }
     for (format, name, ending) in [
-        (Format::Picture, "a.jpg", ".png"),
-        (Format::Picture, "a.svg", ".png"),
-        (Format::Chart, "a.png", ".svg"),
-        (Format::Chart, "a", ".svg"),
+        (PICTURE, "a.jpg", ".png"),
+        (PICTURE, "a.svg", ".png"),
+        (CHART, "a.png", ".svg"),
+        (CHART, "a", ".svg"),
     ] {
         let refused = known(format, name).unwrap_err();
         assert_eq!(refused.code(), ExitCode::Unusable, "{name}");

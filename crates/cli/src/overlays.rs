@@ -9,7 +9,6 @@ use corniche_viewer::tiles::{LayerLine, Overlays};
 
 use crate::{
     args::{LookArgs, OverlayArg},
-    exit::ExitCode,
     failure::Failure,
     messages,
 };
@@ -23,20 +22,20 @@ pub(crate) fn load(look: &LookArgs, manifest: &Manifest) -> Result<Arc<Overlays>
     }
     let (mut lines, mut first, mut points) = (Vec::new(), 0, 0);
     for (style, file) in (0..).zip(files) {
-        let found = read(file.path(), look.allow_ballpark)?;
+        let found = read(&file.path, look.allow_ballpark)?;
         points += found.lines.iter().map(|line| line.positions_deg.len()).sum::<usize>();
         if points > MOST_POINTS {
-            let (path, limit) = (file.path().to_path_buf(), MOST_POINTS);
+            let (path, limit) = (file.path.clone(), MOST_POINTS);
             return Err(OverlayError::TooManyTogether { path, limit }.into());
         }
         let placed = place(&found.lines, manifest)?;
-        tell(file.path(), &found);
+        tell(&file.path, &found);
         let is_near = placed.iter().any(|line| {
             let tile = manifest.frame.tile_lattice_bounds(corniche_geom::TileId::ROOT);
             line.points.iter().any(|point| tile.contains(*point))
         });
         if !is_near {
-            note(file.path(), "no point of its lines lies in the package");
+            note(&file.path, "no point of its lines lies in the package");
         }
         lines.extend(placed.into_iter().map(|line| LayerLine {
             id: (first + line.line) as i64,
@@ -63,13 +62,7 @@ fn note(path: &Path, what: &str) {
 /// What the files are called.
 pub(crate) fn names(files: &[OverlayArg]) -> Vec<String> {
     let name = |file: &OverlayArg| {
-        file.path().file_name().unwrap_or_default().to_string_lossy().into_owned()
+        file.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
     };
     files.iter().map(name).collect()
-}
-
-impl From<OverlayError> for Failure {
-    fn from(error: OverlayError) -> Self {
-        Self::new(ExitCode::Unusable, error)
-    }
 }

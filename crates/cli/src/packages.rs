@@ -1,6 +1,6 @@
 //! The packages that commands read, from files and from web servers.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use corniche_export::with_vertical_crs;
 use corniche_remote::{HttpSettings, HttpSource, PackagePlace, Requests, Web};
@@ -9,33 +9,32 @@ use corniche_viewer::tiles::PackageSource;
 
 use crate::{args::DatumArg, exit::ExitCode, failure::Failure};
 
-/// What asks web servers, once it is needed.
-static WEB: OnceLock<Web> = OnceLock::new();
-/// What was opened on web servers: a package that is opened again has what was read of it.
-static SOURCES: Mutex<Vec<Arc<HttpSource>>> = Mutex::new(Vec::new());
+/// What asks web servers, once it is needed, and what it has opened: a package that is opened again has what was read of it.
+static OPENED: Mutex<(Option<Web>, Vec<Arc<HttpSource>>)> = Mutex::new((None, Vec::new()));
 
 /// Opens a package.
 pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage, Failure> {
     let PackagePlace::Address(address) = place else {
         return Ok(corniche_spec::open_package(place.name())?);
     };
-    let mut sources = SOURCES.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut opened = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
+    let (web, sources) = &mut *opened;
     let known = sources.iter().find(|source| source.address() == address).cloned();
     let source = if let Some(known) = known {
         known
     } else {
-        let web = if let Some(web) = WEB.get() {
-            web
-        } else {
-            let web = Web::new(HttpSettings::default());
-            let web = web.map_err(|error| Failure::new(ExitCode::Failed, error))?;
-            WEB.get_or_init(|| web)
+        let web = match web {
+            Some(web) => web,
+            None => web.insert(
+                Web::new(HttpSettings::default())
+                    .map_err(|error| Failure::new(ExitCode::Failed, error))?,
+            ),
         };
         let source = Arc::new(web.source(address));
         sources.push(Arc::clone(&source));
         source
     };
-    drop(sources);
+    drop(opened);
     Ok(FilePackage::of_source(place.name(), place.file_name(), source)?)
 }
 
@@ -58,7 +57,7 @@ pub(crate) fn source(place: &PackagePlace) -> Result<PackageSource, Failure> {
 
 /// Tells, with `-v`, what was asked of web servers.
 pub(crate) fn tell_requests() {
-    for source in SOURCES.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+    for source in &OPENED.lock().unwrap_or_else(PoisonError::into_inner).1 {
         let Requests { count, received_bytes } = source.requests();
         let package_bytes = source.known_length();
         tracing::debug!(address = %source.address(), requests = count, received_bytes, package_bytes, "read from a web server");

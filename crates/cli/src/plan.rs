@@ -1,6 +1,10 @@
 //! `corniche plan`: what a build will make and what it will take.
 
-use std::{borrow::Cow, fmt::Write as _, path::Path};
+use std::{
+    borrow::Cow,
+    fmt::Write as _,
+    path::{Path, PathBuf},
+};
 
 use corniche_plan::{BuildPlan, Estimate};
 use corniche_remote::without_secrets;
@@ -22,34 +26,25 @@ use crate::{
 pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
     settings::complete(&mut args.work)?;
     // An unusable place is reported before the files are looked at.
-    let written = match &args.output {
-        Some(path) => {
-            let inputs: Vec<&Path> = args.work.files().collect();
-            Some(Output::create(path, existing_of(args.overwrite), &inputs)?)
-        }
-        None => None,
-    };
+    let inputs: Vec<&Path> = args.work.files().collect();
+    let create = |path: &PathBuf| Output::create(path, existing_of(args.overwrite), &inputs);
+    let written = args.output.as_ref().map(create).transpose()?;
+    let write = |plan: &BuildPlan| written.map_or(Ok(()), |file| write_plan(file, plan));
     let work = settings::of(args.work)?;
     if let Some(level) = args.subtrees {
         let plan = BuildPlan::make(&work.plan)?;
         let subtrees = subtrees(&plan, level)?;
-        if let Some(file) = written {
-            write_plan(file, &plan)?;
-        }
+        write(&plan)?;
         messages::answer(&subtrees)?;
         return Ok(ExitCode::Done);
     }
     if let Some(slots) = args.jobs {
         let (plan, jobs) = corniche_pipeline::plan_with_jobs(&work.plan, work.resources, slots)?;
-        if let Some(file) = written {
-            write_plan(file, &plan)?;
-        }
+        write(&plan)?;
         return jobs::print(&jobs);
     }
     let (plan, mut estimate) = corniche_plan::plan(&work.plan, work.resources, &Signals)?;
-    if let Some(file) = written {
-        write_plan(file, &plan)?;
-    }
+    write(&plan)?;
     let digits = Digits::of_answers();
     if args.json {
         estimate.memory.block_file = shown(&estimate.memory.block_file).into_owned();

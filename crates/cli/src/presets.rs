@@ -1,6 +1,7 @@
 //! Presets by name, settings files by path: files to text, which `corniche-presets` reads.
 
 use std::{
+    borrow::Cow,
     fs,
     io::{self, Read as _},
     path::Path,
@@ -19,22 +20,33 @@ use crate::failure::Failure;
 /// Longest text that is read; settings files are far shorter.
 const MAX_FILE_BYTES: u64 = 2 << 20;
 
-/// A preset by its name, else a file by its path.
+/// The FRC table that is a preset by its name, else a file by its path.
 pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable, Failure> {
-    let what = format!("FRC table {name_or_path:?}");
-    if let Some(text) = frc_preset(name_or_path) {
-        return parse_frc_table(text).map_err(|error| refuse(&what, &error));
-    }
-    let text = read_text(Path::new(name_or_path)).map_err(|error| {
+    let text = text_of(name_or_path, frc_preset(name_or_path), |error| {
         let names = frc_preset_names().collect::<Vec<_>>().join(", ");
-        Failure::unusable(format!(
+        format!(
             "--frc-table {name_or_path:?} is neither a preset ({names}) nor a readable file: {error}"
-        ))
+        )
     })?;
-    let table = parse_frc_table(&text).map_err(|error| refuse(&what, &error))?;
-    // Of a copy of a preset the name says it all.
+    let table = parse_frc_table(&text)
+        .map_err(|error| refuse(&format!("FRC table {name_or_path:?}"), &error))?;
+    // Of a preset, or of a copy of one, the name says it all.
     let is_known = preset_labels(table.name()) == table.class_labels();
     Ok(if is_known { table } else { table.with_recorded_labels() })
+}
+
+/// The text of a preset, else of a file by its path.
+fn text_of(
+    path: &str,
+    preset: Option<&'static str>,
+    refusal: impl FnOnce(io::Error) -> String,
+) -> Result<Cow<'static, str>, Failure> {
+    match preset {
+        Some(text) => Ok(text.into()),
+        None => read_text(Path::new(path))
+            .map(Cow::Owned)
+            .map_err(|error| Failure::unusable(refusal(error))),
+    }
 }
 
 /// What the roads of each class of a package are called: as it records, else as the table of its name has them.
@@ -43,19 +55,15 @@ pub(crate) fn class_labels(manifest: &Manifest) -> [String; FunctionalRoadClass:
     settings.recorded_labels().unwrap_or_else(|| preset_labels(&settings.frc_table))
 }
 
-/// A preset by its name, else a file by its path.
+/// The table of areas that is a preset by its name, else a file by its path.
 pub(crate) fn area_table(name_or_path: &str) -> Result<AreaTable, Failure> {
-    let what = format!("area table {name_or_path:?}");
-    if let Some(text) = area_preset(name_or_path) {
-        return parse_area_table(text).map_err(|error| refuse(&what, &error));
-    }
-    let text = read_text(Path::new(name_or_path)).map_err(|error| {
+    let text = text_of(name_or_path, area_preset(name_or_path), |error| {
         let names = area_preset_names().collect::<Vec<_>>().join(", ");
-        Failure::unusable(format!(
+        format!(
             "--areas {name_or_path:?} is neither off nor a preset ({names}) nor a readable file: {error}"
-        ))
+        )
     })?;
-    parse_area_table(&text).map_err(|error| refuse(&what, &error))
+    parse_area_table(&text).map_err(|error| refuse(&format!("area table {name_or_path:?}"), &error))
 }
 
 /// Reads a settings file.

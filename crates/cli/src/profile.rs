@@ -19,7 +19,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages,
-    output::{Complete, Output, existing_of, report_files::ReportFiles},
+    output::{Output, existing_of, report_files::ReportFiles},
     overlays, packages,
     progress::Progress,
     recorded,
@@ -31,22 +31,15 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     let (place, [dem, osm]) = args.recorded.files(&args.extract.osm, usage)?;
     args.refuse_idle_extract(&dem, &osm)?;
     let package = packages::open(&place)?;
-    let list = ("--csv", args.csv.as_deref());
-    let existing = existing_of(args.overwrite);
     // All places are looked at before any work is done.
     let inputs: Vec<&Path> = [place.name()]
         .into_iter()
         .chain(args.line.as_deref())
         .chain(dem.iter().chain(&osm).map(AsRef::as_ref))
         .collect();
-    let all_but_json = inputs.iter().copied().chain(args.csv.as_deref()).chain(args.svg.as_deref());
-    let json = args
-        .json
-        .as_deref()
-        .map(|path| Output::create(path, existing, &all_but_json.collect::<Vec<_>>()));
-    let json = json.transpose()?;
-    let all_but_lists: Vec<&Path> = inputs.iter().copied().chain(args.json.as_deref()).collect();
-    let files = ReportFiles::begin(args.svg.as_deref(), list, &all_but_lists, existing)?;
+    let lists = [("--csv", args.csv.as_deref()), ("--json", args.json.as_deref())];
+    let existing = existing_of(args.overwrite);
+    let files = ReportFiles::begin(args.svg.as_deref(), lists, &inputs, existing)?;
     let placed = |path| placed_lines(path, args.allow_ballpark, &package);
     let lines = args.line.as_deref().map(placed).transpose()?;
     let recorded = recorded::elevation(&args.recorded, &dem, &package)?;
@@ -83,19 +76,19 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     recorded.as_ref().map_or(Ok(()), RecordedElevation::check_unchanged)?;
     let found = found?;
     let title = title(args, &found);
-    // All are complete before the first is put in its place.
-    let fill_json = |output: Output| {
-        let document = ProfileDocument::of(&found, &title, &package.manifest().attribution);
-        output.fill(format!("{}\n", to_line(&document)).as_bytes())
-    };
-    let json = json.map(fill_json).transpose()?;
     let make_svg = || {
         let credits = package.manifest().attribution.join(", ");
         drawing::to_svg(&found, &title, &facts(&found), &credits)
             .map_err(|error| Failure::new(ExitCode::Failed, error))
     };
-    files.write(|output| output.fill(to_csv(&found).as_bytes()), make_svg)?;
-    json.map_or(Ok(()), Complete::place)?;
+    let fill_list = |number, output: Output| {
+        if number == 0 {
+            return output.fill(to_csv(&found).as_bytes());
+        }
+        let document = ProfileDocument::of(&found, &title, &package.manifest().attribution);
+        output.fill(format!("{}\n", to_line(&document)).as_bytes())
+    };
+    files.write(fill_list, make_svg)?;
     for written in [&args.csv, &args.svg, &args.json].into_iter().flatten() {
         messages::note(&format!("wrote {}", written.display()));
     }

@@ -32,7 +32,7 @@ use self::{
 use crate::{
     args::{LogFormat, Voice},
     defects::DefectList,
-    documents::to_line,
+    documents::{progress::seconds, to_line},
     failure::Failure,
     free_memory, interrupt, messages,
     messages::write_line,
@@ -56,11 +56,11 @@ impl Manner {
     /// Progress in the form that the voice asks for.
     fn of(voice: Voice) -> Self {
         match voice {
-            Voice { is_quiet: true, .. } => Self::Quiet,
+            Voice { quiet: true, .. } => Self::Quiet,
             Voice { json_progress: true, .. } => Self::Json,
-            Voice { format: LogFormat::Json, .. } => Self::Events,
+            Voice { log_format: LogFormat::Json, .. } => Self::Events,
             // Lines that come in between would tear a bar.
-            Voice { verbosity: 0, .. } if messages::notes_are_seen() => Self::Bars,
+            Voice { verbose: 0, .. } if messages::notes_are_seen() => Self::Bars,
             Voice { .. } => Self::Lines,
         }
     }
@@ -131,6 +131,14 @@ impl Progress {
         Self::in_manner(Manner::of(messages::voice()))
     }
 
+    /// Does work and tells of it. What runs at its end ends with it.
+    pub(crate) fn of<R>(work: impl FnOnce(&Self) -> R) -> R {
+        let progress = Self::new();
+        let done = work(&progress);
+        progress.finish();
+        done
+    }
+
     /// Tells of a build, and lists its defects if a list is asked for; it must be none of `others`.
     pub(crate) fn of_build(
         list: Option<&Path>,
@@ -163,7 +171,7 @@ impl Progress {
 
     /// Steps of the stage that begins next take unequal time: so many after each other take so long each.
     pub(crate) fn expect_efforts(&self, parts: Vec<(u64, f64)>) {
-        self.shared.state().efforts = Some(Efforts::new(parts));
+        self.shared.state().efforts = Some(Efforts(parts));
     }
 
     /// The stage that runs is over.
@@ -184,7 +192,7 @@ impl Progress {
             }
             Manner::Events => tracing::info!(
                 seconds = wall.as_secs_f64(),
-                cpu_seconds = used.cpu.map(|cpu| cpu.as_secs_f64()),
+                cpu_seconds = seconds(used.cpu),
                 peak_memory_bytes = used.peak_memory_bytes,
                 read_bytes = used.read_bytes,
                 written_bytes = used.written_bytes,
@@ -267,21 +275,7 @@ impl State {
         if let Some(bar) = &running.bar {
             bar.finish_and_clear();
         }
-        match manner {
-            Manner::Quiet => {}
-            Manner::Json => write_line(&to_line(&reading.record("end"))),
-            Manner::Bars | Manner::Lines => {
-                write_line(&format!("{:22} {}", reading.stage.title(), reading.ended(digits())));
-            }
-            Manner::Events => tracing::info!(
-                parent: &running.span,
-                done = reading.done,
-                already = reading.already,
-                seconds = reading.elapsed.as_secs_f64(),
-                cpu_seconds = reading.used.cpu.map(|cpu| cpu.as_secs_f64()),
-                "{}: {}", reading.stage.title(), reading.ended(Digits::Plain)
-            ),
-        }
+        running.tell(manner, &reading, true);
         tracing::debug!(
             parent: &running.span, done = reading.done, seconds = reading.elapsed.as_secs_f64(), "ended"
         );
@@ -365,25 +359,37 @@ impl Running {
             return;
         }
         (self.told, self.told_done) = (Instant::now(), self.done);
-        let reading = self.read();
+        self.tell(manner, &self.read(), false);
+    }
+
+    /// Tells how far it is, or how it ended.
+    fn tell(&self, manner: Manner, reading: &Reading, is_over: bool) {
+        let title = self.stage.title();
+        let text = |digits| if is_over { reading.ended(digits) } else { reading.running(digits) };
         match (manner, &self.bar) {
-            (Manner::Json, _) => write_line(&to_line(&reading.record("running"))),
-            (_, Some(bar)) => {
-                if let Some(total) = self.total {
-                    bar.set_length(total);
-                }
-                bar.set_position(self.done);
-                bar.set_message(reading.running(digits()));
+            (Manner::Quiet, _) => {}
+            (Manner::Json, _) => {
+                let state = if is_over { "end" } else { "running" };
+                write_line(&to_line(&reading.record(state)));
             }
             (Manner::Events, _) => tracing::info!(
                 parent: &self.span,
                 done = reading.done,
-                total = reading.total,
+                already = is_over.then_some(reading.already),
+                total = reading.total.filter(|_| !is_over),
                 seconds = reading.elapsed.as_secs_f64(),
-                "{}: {}", self.stage.title(), reading.running(Digits::Plain)
+                cpu_seconds = seconds(reading.used.cpu.filter(|_| is_over)),
+                "{title}: {}", text(Digits::Plain)
             ),
-            (_, None) => {
-                write_line(&format!("{:22} {}", self.stage.title(), reading.running(digits())));
+            (_, Some(bar)) if !is_over => {
+                if let Some(total) = self.total {
+                    bar.set_length(total);
+                }
+                bar.set_position(self.done);
+                bar.set_message(text(digits()));
+            }
+            (Manner::Bars | Manner::Lines, _) => {
+                write_line(&format!("{title:22} {}", text(digits())));
             }
         }
     }

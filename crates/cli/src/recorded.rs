@@ -76,10 +76,8 @@ fn from_extracts<T>(
         areas: None,
         memory_bytes: MEMORY_BYTES,
     };
-    let progress = Progress::new();
-    let found = read(package, &extract, threads(cpu.threads), &progress);
-    progress.finish();
-    Ok(Some(found?))
+    let found = Progress::of(|progress| read(package, &extract, threads(cpu.threads), progress))?;
+    Ok(Some(found))
 }
 
 /// The FRC table that is named, or the preset whose name the package has.

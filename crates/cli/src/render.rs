@@ -15,15 +15,12 @@ use corniche_viewer::{
 
 use self::picture_files::PictureFiles;
 use crate::{
-    args::{OverlayArg, RenderArgs},
-    exit::ExitCode,
-    failure::Failure,
-    interrupt, messages, overlays, packages, presets, styles,
-    table::Digits,
+    args::RenderArgs, exit::ExitCode, failure::Failure, interrupt, messages, overlays, packages,
+    presets, styles, table::noted,
 };
 
 pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
-    let overlay_files = args.look.overlay.iter().map(OverlayArg::path);
+    let overlay_files = args.look.overlay.iter().map(|file| &*file.path);
     let used: Vec<&Path> = [Some(args.from.package.name()), styles::file_of(&args.look.style)]
         .into_iter()
         .flatten()
@@ -143,7 +140,7 @@ fn incomplete_areas(manifest: &Manifest, style: &Style) -> Option<String> {
         format!(
             "note: areas that are not drawn because the extract lacks parts of their outlines: {}; they may lie anywhere, and corniche build --defects lists \
              them",
-            Digits::of_notes().count(objects)
+            noted(objects)
         )
     })
 }

@@ -14,7 +14,7 @@ use std::{
     sync::Arc,
 };
 
-use corniche_serve::{Answered, Content, Readers, Routes, ServeError, Server, Watch};
+use corniche_serve::{Answered, Content, Readers, Routes, Server, Watch};
 use corniche_store::folder_of;
 
 use self::{
@@ -128,16 +128,6 @@ fn url(named: &str, bound: SocketAddr) -> String {
 
 fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
-}
-
-impl From<ServeError> for Failure {
-    fn from(error: ServeError) -> Self {
-        let code = match &error {
-            ServeError::NoAddress { .. } => ExitCode::Unusable,
-            _ => ExitCode::Failed,
-        };
-        Self::new(code, error)
-    }
 }
 
 #[cfg(test)]

@@ -12,12 +12,13 @@ use corniche_gis::Polygon;
 use corniche_ground::terrain::recorded::TerrainRecord;
 use corniche_presets::{
     AreaOptions, BoundsChoice, InputFiles, OutputFiles, PhotoOptions, RoadOptions, TerrainOptions,
-    class_filter, is_photo_off, parse_memory,
+    class_filter, is_photo_off, parse_bytes,
 };
 use corniche_roads::ClassFilter;
 use corniche_spec::{
     PhotoChoice, PhotoSettings, PlanSettings, Resources, RoadSettings, TerrainSettings,
-    inputs::{elevation_names, extract_names},
+    inputs::{elevation_names, extract_names, input_name},
+    machine::{MIN_MEMORY_BYTES, default_memory_bytes},
 };
 
 use crate::{args::WorkArgs, credits, exit::ExitCode, failure::Failure, presets};
@@ -115,14 +116,9 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     Ok(Work { plan, resources, tmp, force })
 }
 
-/// The name of an input for GDAL and for plans.
-fn input_name(path: PathBuf) -> Result<PathBuf, Failure> {
-    corniche_spec::inputs::input_name(path).map_err(Failure::unusable)
-}
-
 /// Reads a polygon.
 pub(crate) fn polygon(path: PathBuf) -> Result<Polygon, Failure> {
-    let read = Polygon::read(&input_name(path)?);
+    let read = Polygon::read(&input_name(path).map_err(Failure::unusable)?);
     read.map_err(|error| Failure::new(ExitCode::Unusable, error))
 }
 
@@ -139,34 +135,10 @@ fn in_degrees(bounds: BoundsChoice, osm: &[PathBuf]) -> Result<BoundsChoice, Fai
     }
 }
 
-/// An option that may be left out.
-trait Given {
-    /// What it has if it is given.
-    type Value;
-
-    fn given(self) -> Option<Self::Value>;
-}
-
-impl<T> Given for Option<T> {
-    type Value = T;
-
-    fn given(self) -> Self {
-        self
-    }
-}
-
-impl<T> Given for Vec<T> {
-    type Value = Self;
-
-    fn given(self) -> Option<Self> {
-        (!self.is_empty()).then_some(self)
-    }
-}
-
 /// Puts an option, if it is given, in its place in the checked settings.
 macro_rules! give {
     (($options:ident to $settings:ident) $name:ident $key:ident [$($path:tt)+] $usual:tt) => {
-        if let Some(value) = $options.$name.given() {
+        if let Some(value) = $options.$name {
             $settings.$($path)+ = value.into();
         }
     };
@@ -194,7 +166,7 @@ fn photo_choice(names: &[PathBuf], options: &PhotoOptions) -> Result<PhotoChoice
         return Ok(PhotoChoice::Off);
     }
     if names.is_empty() {
-        return if options.is_empty() {
+        return if *options == PhotoOptions::default() {
             Ok(PhotoChoice::OfTerrain)
         } else {
             Err(Failure::unusable(
@@ -228,7 +200,10 @@ fn lines(options: &AreaOptions, osm: &[PathBuf]) -> Result<Vec<ClassedLayer>, Fa
     let mut wanted = Vec::new();
     for layer in ClassedLayer::ALL {
         let name = layer.name();
-        match options.lines(layer) {
+        let is_wanted = match layer {
+            ClassedLayer::Boundaries => options.boundaries,
+        };
+        match is_wanted {
             None | Some(false) => {}
             Some(true) if osm.is_empty() => {
                 return Err(Failure::unusable(format!(
@@ -271,10 +246,15 @@ pub(crate) fn resources(
     memory: Option<&str>,
 ) -> Result<Resources, Failure> {
     let memory_bytes = match memory {
-        Some(text) => {
-            parse_memory(text).map_err(|error| Failure::unusable(format!("--memory {error}")))?
-        }
-        None => corniche_spec::machine::default_memory_bytes(),
+        Some(text) => match parse_bytes(text) {
+            Ok(size_bytes) if size_bytes >= MIN_MEMORY_BYTES => size_bytes,
+            _ => {
+                return Err(Failure::unusable(format!(
+                    "--memory {text:?} is not a size of at least 256M; write it like 512M, 800MB, 0.5G or 1T"
+                )));
+            }
+        },
+        None => default_memory_bytes(),
     };
     Ok(Resources { threads: threads(threads_asked), memory_bytes })
 }

@@ -98,3 +98,16 @@ fn the_settings_file_has_every_key() {
         assert_eq!(keys, wanted, "[{section}]");
     }
 }
+
+#[test]
+fn memory_has_a_least_size() {
+    let bytes = |text| {
+        let found = resources(None, Some(text)).map(|found| found.memory_bytes);
+        found.map_err(|failure| failure.to_string())
+    };
+    assert_eq!(bytes("256M"), Ok(256 << 20));
+    assert_eq!(bytes("1073741824"), Ok(1 << 30));
+    for bad in ["", "G", "-1G", "255M", "99999999999G", "ä"] {
+        assert!(bytes(bad).unwrap_err().contains("at least 256M"), "{bad}");
+    }
+}

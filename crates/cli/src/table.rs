@@ -148,6 +148,11 @@ impl Digits {
     }
 }
 
+/// A whole number in notes.
+pub(crate) fn noted(number: u64) -> String {
+    Digits::of_notes().count(number)
+}
+
 /// A size for people.
 pub(crate) fn bytes(size: u64) -> String {
     match size {

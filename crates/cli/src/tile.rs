@@ -3,8 +3,8 @@
 use corniche_areas::ClassedLayer;
 use corniche_geom::{Bounds, LatticePoint, NodeIndex, TileId};
 use corniche_tileset::{
-    AreaRecord, FilePackage, LineRecord, Manifest, Sections, SpanPoint, SpanRun, Terrain,
-    TilePayload, decode_areas, decode_lines, decode_spans,
+    AreaRecord, FilePackage, GeoRoad, LineRecord, Manifest, Sections, SpanPoint, SpanRun, SvRoad,
+    Terrain, TilePayload, decode_areas, decode_lines, decode_spans,
 };
 use corniche_tin::{Placement, Surface};
 
@@ -28,7 +28,7 @@ use crate::{
 pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
     let package = packages::open(&args.from.package)?;
     let payload = match (args.id, args.at) {
-        (Some(id), _) => payload(&package, id)?.ok_or_else(|| no_tile(args, id))?,
+        (Some(id), _) => package.payload(id, Sections::ALL)?.ok_or_else(|| no_tile(args, id))?,
         (None, Some(at)) => payload_at(args, &package, at)?,
         // The command line has one of them.
         (None, None) => return Err(Failure::unusable("name a tile: Z/X/Y, or --at LON,LAT")),
@@ -43,10 +43,6 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::Done)
 }
 
-fn payload(package: &FilePackage, id: TileId) -> Result<Option<TilePayload>, Failure> {
-    package.payload(id, Sections::ALL).map_err(|error| Failure::new(ExitCode::Unusable, error))
-}
-
 /// What a tile has of the layers that are read by themselves.
 struct TileLayers {
     areas: Vec<AreaRecord>,
@@ -56,16 +52,14 @@ struct TileLayers {
 
 impl TileLayers {
     fn read(package: &FilePackage, id: TileId) -> Result<Self, Failure> {
-        let unusable = |error: &dyn std::error::Error| Failure::unusable(error.to_string());
-        let bytes = package.tile(id).map_err(|error| unusable(&error))?.unwrap_or_default();
+        let bytes = package.tile(id).map_err(Failure::unusable)?.unwrap_or_default();
         let Manifest { frame, vertical, .. } = package.manifest();
-        let areas = decode_areas(&bytes, id, frame);
         let boundaries = decode_lines(&bytes, id, ClassedLayer::Boundaries);
         let spans = decode_spans(&bytes, id, frame, vertical.quantum_m);
         Ok(Self {
-            areas: areas.map_err(|error| unusable(&error))?,
-            boundaries: boundaries.map_err(|error| unusable(&error))?,
-            spans: spans.map_err(|error| unusable(&error))?,
+            areas: decode_areas(&bytes, id, frame).map_err(Failure::unusable)?,
+            boundaries: boundaries.map_err(Failure::unusable)?,
+            spans: spans.map_err(Failure::unusable)?,
         })
     }
 }
@@ -93,7 +87,7 @@ fn payload_at(
         if !lies_in_data(manifest, point) {
             break;
         }
-        let Some(payload) = payload(package, id)? else { continue };
+        let Some(payload) = package.payload(id, Sections::ALL)? else { continue };
         if args.level.is_none() && level < finest {
             messages::note(&format!(
                 "there is no tile of level {finest} at this place; tile {id} is the finest one"
@@ -184,19 +178,24 @@ fn to_text(payload: &TilePayload, layers: &TileLayers, digits: Digits) -> String
     table.to_text()
 }
 
-/// Makes coordinates of one kind from working metres.
+/// Makes coordinates of one kind from working metres and from points of the lattice.
 #[derive(Clone, Copy)]
-struct Places {
+struct Places<'a> {
+    manifest: &'a Manifest,
     /// What working metres are divided by.
     unit: [f64; 2],
 }
 
-impl Places {
-    fn of(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+impl Places<'_> {
+    fn of(self, [x, y]: [f64; 2]) -> [f64; 2] {
         [x / self.unit[0], y / self.unit[1]]
     }
 
-    fn with_height(&self, position: [f64; 2], height_m: f64) -> [f64; 3] {
+    fn of_point(self, point: LatticePoint) -> [f64; 2] {
+        self.of(self.manifest.frame.position_m(point))
+    }
+
+    fn with_height(self, position: [f64; 2], height_m: f64) -> [f64; 3] {
         let [x, y] = self.of(position);
         [x, y, height_m]
     }
@@ -214,7 +213,8 @@ fn document<'a>(
         Coordinates::Working => ("working", [1.0; 2]),
         Coordinates::Crs => ("crs", manifest.metres_per_unit),
     };
-    let places = Places { unit };
+    let places = Places { manifest, unit };
+    let at = |point| places.of_point(point);
     let Bounds { min_x, min_y, max_x, max_y } = frame.tile_bounds(id);
     // Where an axis counts back, its smallest coordinate is that of the other end.
     let mut bounds = Bounds::EMPTY;
@@ -223,14 +223,16 @@ fn document<'a>(
     let terrain = payload.terrain.as_ref();
     let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
     let surface = terrain.map(|terrain| Surface::new(&terrain.tin, placement));
+    let (mut roads_geo, mut spans) = (Vec::new(), Vec::new());
     // Without ground a tile has neither.
-    let (roads_geo, spans) = match &surface {
-        Some(surface) => (
-            roads_geo(manifest, payload, surface, &places)?,
-            spans(manifest, id, &layers.spans, surface, &places)?,
-        ),
-        None => (Vec::new(), Vec::new()),
-    };
+    if let Some(surface) = &surface {
+        for road in &payload.roads_geo {
+            roads_geo.push(geo_road(road, surface, places)?);
+        }
+        for run in &layers.spans {
+            spans.push(span(id, run, surface, places)?);
+        }
+    }
     Ok(TileDocument {
         id: id.to_string(),
         crs: manifest.crs.clone(),
@@ -242,32 +244,28 @@ fn document<'a>(
         geometric_error_m: terrain.map(|terrain| terrain.geometric_error_m),
         height_range_m: terrain.map(|terrain| terrain.height_range_m),
         uncovered_nodes: terrain.map(|terrain| terrain.uncovered_nodes),
-        tin: terrain.map(|terrain| tin(manifest, id, terrain, &places)).unwrap_or_default(),
+        tin: terrain.map(|terrain| tin(id, terrain, places)).unwrap_or_default(),
         roads_geo,
-        roads_sv: Written::of(&payload.roads_sv, move |road| sv_road(manifest, road, places)),
+        roads_sv: Written::of(&payload.roads_sv, move |road| sv_road(road, places)),
         attributes: Written::of(&payload.attributes, WayDocument::from),
-        areas: layers
-            .areas
-            .into_iter()
-            .map(|area| TileAreaDocument::of(area, frame, &|position| places.of(position)))
-            .collect(),
+        areas: layers.areas.into_iter().map(|area| TileAreaDocument::of(area, &at)).collect(),
         boundaries: layers
             .boundaries
             .into_iter()
-            .map(|line| TileBoundaryDocument::of(line, frame, &|position| places.of(position)))
+            .map(|line| TileBoundaryDocument::of(line, at))
             .collect(),
         spans,
     })
 }
 
-fn tin(manifest: &Manifest, id: TileId, terrain: &Terrain, places: &Places) -> TinDocument {
-    let frame = &manifest.frame;
+fn tin(id: TileId, terrain: &Terrain, places: Places<'_>) -> TinDocument {
+    let Manifest { frame, vertical, .. } = places.manifest;
     let corner = frame.tile_corner(id);
     let stride = frame.stride(id.z());
     let vertices = terrain.tin.vertices().iter().map(|vertex| {
         let x = frame.x_m(corner.i + i64::from(vertex.column) * stride);
         let y = frame.y_m(corner.j - i64::from(vertex.row) * stride);
-        places.with_height([x, y], f64::from(vertex.height_q) * manifest.vertical.quantum_m)
+        places.with_height([x, y], f64::from(vertex.height_q) * vertical.quantum_m)
     });
     TinDocument {
         vertices: vertices.collect(),
@@ -276,58 +274,49 @@ fn tin(manifest: &Manifest, id: TileId, terrain: &Terrain, places: &Places) -> T
     }
 }
 
-fn roads_geo(
-    manifest: &Manifest,
-    payload: &TilePayload,
+fn geo_road(
+    road: &GeoRoad,
     surface: &Surface,
-    places: &Places,
-) -> Result<Vec<GeoRoadDocument>, Failure> {
-    let frame = &manifest.frame;
-    let road = |road: &corniche_tileset::GeoRoad| {
-        let positions = corniche_drape::positions(&road.line, surface)
-            .map_err(|error| Failure::new(ExitCode::Unusable, error))?;
-        let place = |[u, v, height_m]: [f64; 3]| {
-            places.with_height(frame.position_of_fraction_m([u, v]), height_m)
-        };
-        Ok(GeoRoadDocument {
-            way_id: road.way_id,
-            part: road.part,
-            frc: road.class.number(),
-            line: positions.into_iter().map(place).collect(),
-        })
+    places: Places<'_>,
+) -> Result<GeoRoadDocument, Failure> {
+    let positions = corniche_drape::positions(&road.line, surface)
+        .map_err(|error| Failure::new(ExitCode::Unusable, error))?;
+    let place = |[u, v, height_m]: [f64; 3]| {
+        places.with_height(places.manifest.frame.position_of_fraction_m([u, v]), height_m)
     };
-    payload.roads_geo.iter().map(road).collect()
+    Ok(GeoRoadDocument {
+        way_id: road.way_id,
+        part: road.part,
+        frc: road.class.number(),
+        line: positions.into_iter().map(place).collect(),
+    })
 }
 
-fn spans(
-    manifest: &Manifest,
+fn span(
     id: TileId,
-    runs: &[SpanRun],
+    run: &SpanRun,
     surface: &Surface,
-    places: &Places,
-) -> Result<Vec<TileSpanDocument>, Failure> {
-    let span = |run: &SpanRun| {
-        let place = |point: &SpanPoint| {
-            let height_m = point.height_m(surface, manifest.vertical.quantum_m)?;
-            Some(places.with_height(manifest.frame.position_m(point.at), height_m))
-        };
-        let line: Option<Vec<[f64; 3]>> = run.points.iter().map(place).collect();
-        let line = line.ok_or_else(|| {
-            let way = run.way_id;
-            Failure::unusable(format!("tile {id}: a span of way {way} ends beside the ground"))
-        })?;
-        Ok(TileSpanDocument::of(run, line))
+    places: Places<'_>,
+) -> Result<TileSpanDocument, Failure> {
+    let Manifest { frame, vertical, .. } = places.manifest;
+    let place = |point: &SpanPoint| {
+        let height_m = point.height_m(surface, vertical.quantum_m)?;
+        Some(places.with_height(frame.position_m(point.at), height_m))
     };
-    runs.iter().map(span).collect()
+    let line: Option<Vec<[f64; 3]>> = run.points.iter().map(place).collect();
+    let line = line.ok_or_else(|| {
+        let way = run.way_id;
+        Failure::unusable(format!("tile {id}: a span of way {way} ends beside the ground"))
+    })?;
+    Ok(TileSpanDocument::of(run, line))
 }
 
-fn sv_road(manifest: &Manifest, road: &corniche_tileset::SvRoad, places: Places) -> SvRoadDocument {
-    let place = |&point: &_| places.of(manifest.frame.position_m(point));
+fn sv_road(road: &SvRoad, places: Places<'_>) -> SvRoadDocument {
     SvRoadDocument {
         way_id: road.way_id,
         part: road.part,
         frc: road.class.number(),
-        line: road.line.points.iter().map(place).collect(),
+        line: road.line.points.iter().map(|&point| places.of_point(point)).collect(),
         ground_range_m: road.line.ground_range_m.clone(),
     }
 }

@@ -4,13 +4,13 @@ use std::{fmt::Write as _, path::PathBuf};
 
 use corniche_areas::AreaTable;
 use corniche_presets::area_preset;
-use corniche_tileset::{FilePackage, Manifest};
+use corniche_tileset::FilePackage;
 use corniche_verify::{
     Check, CheckId, ErrorFigures, Needs, VerifyError, VerifyOsm, VerifyReport, VerifySettings,
 };
 
 use crate::{
-    args::{VerifyArgs, VerifyFiles},
+    args::VerifyArgs,
     documents::{to_line, verify::VerifyDocument},
     escaped::in_line,
     exit::ExitCode,
@@ -24,7 +24,7 @@ use crate::{
 };
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
-    let VerifyFiles { package, dem, photo, osm } = args.files()?;
+    let (package, [dem, photo, osm]) = args.files()?;
     let package = packages::open(&package)?;
     let osm = extract(args, &osm, &package)?;
     let settings = VerifySettings {
@@ -38,9 +38,11 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     let text = if args.json {
         format!("{}\n", to_line(&VerifyDocument::from(&report)))
     } else {
-        let missing = Missing::of(&report, Holds::of(package.manifest()));
+        let manifest = package.manifest();
+        let held = [manifest.settings.photo.is_some(), manifest.has_extract()];
+        let missing = Missing::of(&report, held);
         let digits = Digits::of_answers();
-        if messages::voice().is_quiet {
+        if messages::voice().quiet {
             to_short_text(&report, &missing, digits)
         } else {
             to_text(&report, &missing, digits)
@@ -93,39 +95,23 @@ fn areas(args: &VerifyArgs, package: &FilePackage) -> Result<Option<AreaTable>, 
     }
 }
 
-/// What a package can be checked against beside elevation files.
-#[derive(Debug, Clone, Copy, Default)]
-struct Holds {
-    photos: bool,
-    extract: bool,
-}
-
-impl Holds {
-    fn of(manifest: &Manifest) -> Self {
-        Self { photos: manifest.settings.photo.is_some(), extract: manifest.has_extract() }
-    }
-}
-
 /// Inputs that were not given, though checks of the package need them.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-struct Missing {
-    inputs: Vec<Needs>,
-}
+#[derive(Debug, Default)]
+struct Missing(Vec<Needs>);
 
 impl Missing {
-    /// What is missing for the checks that a report does not have. A package without photos or an extract has no checks of them.
-    fn of(report: &VerifyReport, holds: Holds) -> Self {
+    /// What is missing for the checks that a report does not have, of a package with photos or an extract, or without: then it has no checks of them.
+    fn of(report: &VerifyReport, [has_photos, has_extract]: [bool; 2]) -> Self {
         let is_given = |needs| report.checks.iter().any(|check| check.id.needs() == needs);
-        let needed =
-            [(Needs::Dem, true), (Needs::Photo, holds.photos), (Needs::Osm, holds.extract)];
-        let missing = needed.into_iter().filter(|&(needs, holds)| holds && !is_given(needs));
-        Self { inputs: missing.map(|(needs, _)| needs).collect() }
+        let needed = [(Needs::Dem, true), (Needs::Photo, has_photos), (Needs::Osm, has_extract)];
+        let missing = needed.into_iter().filter(|&(needs, has)| has && !is_given(needs));
+        Self(missing.map(|(needs, _)| needs).collect())
     }
 
     /// How many more checks they allow, and their options: "20 more need --dem and --osm".
     fn text(&self) -> Option<String> {
         let options: Vec<&str> =
-            self.inputs.iter().map(|needs| needs.text().trim_matches('`')).collect();
+            self.0.iter().map(|needs| needs.text().trim_matches('`')).collect();
         let options = match *options {
             [] => return None,
             [ref first @ .., last] if !first.is_empty() => {
@@ -133,7 +119,7 @@ impl Missing {
             }
             ref only => only.concat(),
         };
-        let more = CheckId::ALL.iter().filter(|id| self.inputs.contains(&id.needs())).count();
+        let more = CheckId::ALL.iter().filter(|id| self.0.contains(&id.needs())).count();
         Some(format!("{more} more need {options}"))
     }
 }

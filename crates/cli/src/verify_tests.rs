@@ -45,9 +45,7 @@ fn the_last_line_is_the_verdict() {
     let (of_dem, of_osm) = (number(Needs::Dem), number(Needs::Osm));
     let both = of_dem + of_osm;
     let all_three = both + number(Needs::Photo);
-    let none = Holds { photos: false, extract: false };
-    let roads = Holds { extract: true, ..none };
-    let photos = Holds { photos: true, ..roads };
+    let [none, roads, photos] = [[false; 2], [false, true], [true; 2]];
     let [seams, order] = [CheckId::Seams, CheckId::Order];
     let (plan, bound) = (CheckId::DemPlan, CheckId::Bound);
     let package = vec![check(seams, 1, 0), check(order, 1, 0)];

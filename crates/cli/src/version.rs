@@ -4,11 +4,6 @@ use std::{env, io};
 
 use crate::messages;
 
-/// GDAL and PROJ, as they were found when the program was started.
-pub(crate) fn libraries() -> String {
-    corniche_gis::libraries()
-}
-
 /// Whether the command line asks for more than the program's own version: `--version`, not `-V`.
 pub(crate) fn is_long_asked_for() -> bool {
     env::args_os().any(|argument| argument == "--version")
@@ -21,7 +16,7 @@ pub(crate) fn print_long() -> io::Result<()> {
     let text = format!(
         "corniche {}\n{}\nformats: package {}, plan {}, store {}\ninputs: {}\nwgpu backends: {}\n",
         env!("CARGO_PKG_VERSION"),
-        libraries(),
+        corniche_gis::libraries(),
         corniche_tileset::FORMAT_VERSION,
         corniche_plan::PLAN_VERSION,
         corniche_store::FORMAT_VERSION,

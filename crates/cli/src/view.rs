@@ -5,12 +5,11 @@ use std::{fs, io, path::Path, sync::Arc};
 use corniche_styles::style_preset_names;
 use corniche_viewer::{RoadMethod, gpu::GpuError, tiles::MapPackage as _};
 use corniche_window::{
-    BeginTrace, Closed, End, Inertia, NamedStyle, Reload, WindowError, WindowRequest,
-    run as open_window,
+    BeginTrace, Closed, End, NamedStyle, Reload, WindowError, WindowRequest, run as open_window,
 };
 
 use crate::{
-    args::{Motion, OverlayArg, Roads, ViewArgs, with_overlays},
+    args::{OverlayArg, Roads, ViewArgs, with_overlays},
     drawing::Drawing,
     exit::ExitCode,
     failure::Failure,
@@ -29,7 +28,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
     }
     let roads = args.look.roads(&[args.roads.unwrap_or(Roads::DEFAULT)])?[0];
     let own = [Some(args.from.package.name()), file_of(chosen)].into_iter().flatten();
-    let used: Vec<&Path> = own.chain(args.look.overlay.iter().map(OverlayArg::path)).collect();
+    let used: Vec<&Path> = own.chain(args.look.overlay.iter().map(|file| &*file.path)).collect();
     let trace = args.trace.as_deref().map(|path| begin_trace(path, &used)).transpose()?;
     if args.folder.exists() && !args.folder.is_dir() {
         return Err(Failure::unusable(format!(
@@ -59,9 +58,9 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         ),
         styles,
         photo: args.look.photo,
-        areas: args.look.areas.in_window(),
+        areas: args.look.areas,
         reload: reload(chosen, &args.look.overlay),
-        boundaries: args.look.boundaries.in_window(),
+        boundaries: args.look.boundaries,
         overlays: overlays::names(&args.look.overlay),
         drawn_lines: drawing.lines,
         save_drawing: drawing.save,
@@ -70,10 +69,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         exaggeration: args.ground.exaggeration,
         samples_per_side: args.supersampling,
         budget: args.gpu.budget(),
-        inertia: match args.motion {
-            Motion::Soft => Inertia::On,
-            Motion::Prompt => Inertia::Off,
-        },
+        inertia: args.motion,
         folder: args.folder.clone(),
         trace,
         is_stopped: Box::new(interrupt::is_noted),
@@ -150,20 +146,4 @@ fn reload(name_or_path: &str, overlays: &[OverlayArg]) -> Option<Reload> {
         let style = style.map(|style| with_overlays(&overlays, style));
         Some(style.map_err(|failure| failure.to_string()))
     }))
-}
-
-impl From<WindowError> for Failure {
-    fn from(error: WindowError) -> Self {
-        let code = match &error {
-            WindowError::Load(_)
-            | WindowError::NoGround { .. }
-            | WindowError::OverBudget { .. }
-            | WindowError::OffGround(_)
-            | WindowError::Range(_)
-            | WindowError::NoStyle
-            | WindowError::Trace { .. } => ExitCode::Unusable,
-            _ => ExitCode::Failed,
-        };
-        Self::new(code, error)
-    }
 }

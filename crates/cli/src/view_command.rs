@@ -9,7 +9,7 @@ use corniche_window::{CommandOf, ShownView, Visibility};
 
 use corniche_styles::Rgb;
 
-use crate::args::{OverlayArg, Roads};
+use crate::args::{OUTLINES, OverlayArg, Roads, WIDTH_GROWTHS, word_of};
 
 /// The file that the command names.
 const PICTURE: &str = "view.png";
@@ -82,9 +82,9 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
             continue;
         }
         // Without the files before it, it would be drawn in their colour.
-        let color = shown.overlay_colors.get(number).filter(|_| !overlay.has_color());
+        let color = shown.overlay_colors.get(number).filter(|_| overlay.color.is_none());
         let color = color.map(|color| format!(",color={}", hex(*color))).unwrap_or_default();
-        option("--overlay", format!("{}{color}", overlay.text()));
+        option("--overlay", format!("{}{color}", overlay.text));
     }
     for (name, value) in look(shown.roads) {
         option(name, value.to_owned());
@@ -114,16 +114,11 @@ fn look(roads: RoadOptions) -> Vec<(&'static str, &'static str)> {
     if roads.caps == Caps::None && roads.method != RoadMethod::None {
         given.push(("--caps", "none"));
     }
-    match roads.width_growth {
-        WidthGrowth::None => given.push(("--width-growth", "none")),
-        WidthGrowth::Constant => given.push(("--width-growth", "constant")),
-        WidthGrowth::ByDistance => {}
+    if roads.width_growth != WidthGrowth::ByDistance {
+        given.push(("--width-growth", word_of(&WIDTH_GROWTHS, &roads.width_growth)));
     }
-    match roads.outline {
-        Outline::None => given.push(("--outline", "none")),
-        Outline::Kernel3 => given.push(("--outline", "3")),
-        Outline::Kernel5 => given.push(("--outline", "5")),
-        Outline::OfStyle => {}
+    if roads.outline != Outline::OfStyle {
+        given.push(("--outline", word_of(&OUTLINES, &roads.outline)));
     }
     // The option is refused where no shadow volume has caps.
     let has_caps = roads.method == RoadMethod::ShadowVolumes && roads.caps == Caps::Round;

@@ -73,7 +73,7 @@ fn files_of_lines_are_drawn_as_they_are_shown() {
     let shown = shown(RoadOptions::of(RoadMethod::ShadowVolumes));
     let texts = |shown: &ShownView| -> Vec<String> {
         let given = read("a.pmtiles", shown).look.overlay;
-        given.iter().map(|overlay| overlay.text().to_owned()).collect()
+        given.iter().map(|overlay| overlay.text.clone()).collect()
     };
     let colors = vec![[1.0, 0.5, 0.0], [0.0; 3], [0.0, 0.0, 1.0]];
     let shown = ShownView { overlay_colors: colors, ..shown };
@@ -147,7 +147,7 @@ fn every_look_of_roads_is_read_as_it_was() {
     assert_eq!(read("a", &none).roads, Roads::None);
     for areas in [Visibility::Shown, Visibility::Hidden] {
         let shown = ShownView { areas, ..none.clone() };
-        assert_eq!(read("a", &shown).look.areas.in_window(), areas);
+        assert_eq!(read("a", &shown).look.areas, areas);
     }
 }
 

@@ -3,7 +3,6 @@
 use std::{collections::BTreeMap, num::NonZeroUsize, path::PathBuf};
 
 use clap::Args;
-use corniche_areas::ClassedLayer;
 use corniche_geom::Cell;
 use corniche_settings::ReliefLevels;
 use serde::{Deserialize, Deserializer, de::Error};
@@ -13,8 +12,8 @@ use crate::{
     error::bounded,
     files::{OutputFiles, one_or_many_names},
     values::{
-        check_cells, check_height_range, check_max_error, check_nodata, check_simplify, either,
-        parse_cell, parse_range, relief_parser,
+        RELIEF, check_cells, check_height_range, check_max_error, check_nodata, check_simplify,
+        either, one_of, parse_cell, parse_range,
     },
 };
 
@@ -104,18 +103,8 @@ macro_rules! options {
 
 corniche_settings::settings! { [options] () }
 
-impl AreaOptions {
-    /// Whether a layer of lines is wanted.
-    #[must_use]
-    pub fn lines(&self, layer: ClassedLayer) -> Option<bool> {
-        match layer {
-            ClassedLayer::Boundaries => self.boundaries,
-        }
-    }
-}
-
-/// A list of numbers, or one alone.
-fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
+/// A list of numbers, or one alone; an empty one says nothing.
+fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<f64>>, D::Error> {
     #[derive(Deserialize)]
     #[serde(untagged, expecting = "expected a number or a list of numbers")]
     enum OneOrMany {
@@ -123,8 +112,8 @@ fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D
         Many(Vec<f64>),
     }
     Ok(match OneOrMany::deserialize(deserializer)? {
-        OneOrMany::One(value) => vec![value],
-        OneOrMany::Many(values) => values,
+        OneOrMany::One(value) => Some(vec![value]),
+        OneOrMany::Many(values) => Some(values).filter(|values| !values.is_empty()),
     })
 }
 

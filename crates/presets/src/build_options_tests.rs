@@ -20,9 +20,11 @@ fn settings_files_are_read_whole_or_refused() {
 #[test]
 fn one_value_for_no_data_is_said_as_shortly_as_before() {
     let nodata = |text: &str| Config::parse(text).map(|config| config.terrain.nodata);
-    assert_eq!(nodata("[terrain]\nnodata = -9999\n").unwrap(), [-9999.0]);
-    assert_eq!(nodata("[terrain]\nnodata = [-9999, 0.5]\n").unwrap(), [-9999.0, 0.5]);
-    assert_eq!(nodata("[terrain]\n").unwrap(), [0.0; 0]);
+    assert_eq!(nodata("[terrain]\nnodata = -9999\n").unwrap(), Some(vec![-9999.0]));
+    assert_eq!(nodata("[terrain]\nnodata = [-9999, 0.5]\n").unwrap(), Some(vec![-9999.0, 0.5]));
+    for nothing in ["[terrain]\n", "[terrain]\nnodata = []\n"] {
+        assert_eq!(nodata(nothing).unwrap(), None, "{nothing}");
+    }
     assert!(nodata("[terrain]\nnodata = \"none\"\n").is_err());
     let config = Config::parse("[terrain]\nheight-range = [-500, 9000]\n").unwrap();
     assert_eq!(config.terrain.height_range, Some([-500.0, 9000.0]));
@@ -67,7 +69,7 @@ fn what_the_first_leaves_out_is_taken_from_the_second() {
     );
     let terrain = first.terrain.clone().or(second.terrain.clone());
     assert_eq!((terrain.cell, terrain.cell_every), (None, Some(3)));
-    assert_eq!((terrain.nodata, terrain.max_error), (vec![-1.0], Some(7.0)));
+    assert_eq!((terrain.nodata, terrain.max_error), (Some(vec![-1.0]), Some(7.0)));
     assert!(first.roads.or(second.roads).all_classes);
     let resources = first.resources.or(second.resources);
     assert_eq!(resources.threads, NonZeroUsize::new(2));
@@ -88,7 +90,7 @@ fn all_options(n: u8) -> (TerrainOptions, RoadOptions, AreaOptions, ResourceOpti
         vertical_crs: Some(text("vertical-crs")),
         vertical_shift: Some(number),
         vertical_unit: Some(text("unit")),
-        nodata: vec![number],
+        nodata: Some(vec![number]),
         height_range: Some([0.0, number]),
         scale_latitude: Some(number),
         cell: Some(Cell::from(number)),

@@ -28,4 +28,4 @@ pub use error::PresetError;
 pub use files::OutputFiles;
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
 pub use photo::is_photo_off;
-pub use values::{parse_bytes, parse_memory};
+pub use values::{Words, one_of, parse_bytes};

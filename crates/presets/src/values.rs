@@ -20,22 +20,6 @@ pub fn parse_bytes(text: &str) -> Result<u64, String> {
     }
 }
 
-/// The least memory: with less a build cannot hold a tile for each of a few threads.
-const MIN_MEMORY_BYTES: u64 = 256 << 20;
-
-/// Memory that is enough to build in, bytes.
-///
-/// # Errors
-/// When the text is no size, or one that is too small.
-pub fn parse_memory(text: &str) -> Result<u64, String> {
-    match parse_bytes(text) {
-        Ok(size_bytes) if size_bytes >= MIN_MEMORY_BYTES => Ok(size_bytes),
-        _ => Err(format!(
-            "{text:?} is not a size of at least 256M; write it like 512M, 800MB, 0.5G or 1T"
-        )),
-    }
-}
-
 /// The lowest and the highest of something, in this order.
 pub(crate) fn parse_range(text: &str) -> Result<[f64; 2], String> {
     let ends = text
@@ -109,7 +93,8 @@ pub(crate) fn check_simplify(given: &[f64]) -> Result<(), String> {
 }
 
 /// Values that mean "no data" are numbers, and not too many.
-pub(crate) fn check_nodata(given: &[f64]) -> Result<(), String> {
+pub(crate) fn check_nodata(given: &[Vec<f64>]) -> Result<(), String> {
+    let [given] = given else { return Ok(()) };
     if let Some(value) = given.iter().find(|value| !value.is_finite()) {
         return Err(format!(
             "--nodata {value} is not needed: a value that is not a finite number is never taken for a height; leave it out"
@@ -125,21 +110,34 @@ pub(crate) fn check_nodata(given: &[f64]) -> Result<(), String> {
     Ok(())
 }
 
-/// Reads one of two words, of which the second means yes.
-pub(crate) fn either(words: [&'static str; 2]) -> impl TypedValueParser<Value = bool> {
-    PossibleValuesParser::new(words).map(move |word| word == words[1])
-}
+/// The values of an option: the word of each, what its help says of it, if it says anything, and what it stands for.
+pub type Words<T, const N: usize> = [(&'static str, &'static str, T); N];
 
-/// Reads the name of levels with relief.
-pub(crate) fn relief_parser() -> impl TypedValueParser<Value = ReliefLevels> {
-    let helps = ["None", "The finest level alone", "All levels"];
-    let values = ReliefLevels::ALL.into_iter().zip(helps);
-    let values = values.map(|(levels, help)| PossibleValue::new(levels.name()).help(help));
-    PossibleValuesParser::new(values).map(|name| {
-        let is_named = |levels: &ReliefLevels| levels.name() == name;
-        ReliefLevels::ALL.into_iter().find(is_named).unwrap_or_default()
+/// One of some values by its word.
+pub fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    values: Words<T, N>,
+) -> impl TypedValueParser<Value = T> {
+    let words = values.map(|(word, help, _)| {
+        let value = PossibleValue::new(word);
+        if help.is_empty() { value } else { value.help(help) }
+    });
+    PossibleValuesParser::new(words).try_map(move |given| {
+        let found = values.iter().find(|(word, ..)| *word == given);
+        found.map(|(_, _, value)| *value).ok_or("it is no value of this option")
     })
 }
+
+/// Reads one of two words, of which the second means yes.
+pub(crate) fn either([no, yes]: [&'static str; 2]) -> impl TypedValueParser<Value = bool> {
+    one_of([(no, "", false), (yes, "", true)])
+}
+
+/// Levels with relief by their names.
+pub(crate) const RELIEF: Words<ReliefLevels, 3> = [
+    ("off", "None", ReliefLevels::Off),
+    ("finest", "The finest level alone", ReliefLevels::Finest),
+    ("full", "All levels", ReliefLevels::Full),
+];
 
 #[cfg(test)]
 #[path = "values_tests.rs"]

@@ -67,12 +67,3 @@ fn cells_are_squares_or_rectangles() {
         assert!(parse_cell(bad).unwrap_err().contains("positive number of metres"), "{bad}");
     }
 }
-
-#[test]
-fn memory_has_a_least_size() {
-    assert_eq!(parse_memory("256M"), Ok(256 << 20));
-    assert_eq!(parse_memory("1073741824"), Ok(1 << 30));
-    for bad in ["", "G", "-1G", "255M", "99999999999G", "ä"] {
-        assert!(parse_memory(bad).unwrap_err().contains("at least 256M"), "{bad}");
-    }
-}

@@ -16,9 +16,6 @@ pub enum ReliefLevels {
 }
 
 impl ReliefLevels {
-    /// All values.
-    pub const ALL: [Self; 3] = [Self::Off, Self::Finest, Self::Full];
-
     /// Its name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {

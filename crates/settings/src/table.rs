@@ -120,7 +120,7 @@ Terrain(TerrainOptions, "Terrain") {
     /// given several times
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     #[serde(deserialize_with = "one_or_many")]
-    nodata: Vec<f64>, check check_nodata => {
+    nodata: Option<Vec<f64>>, check check_nodata => {
         /// Each `--nodata`, in their order.
         ["--nodata"] nodata: Vec<f64>, within f64::MIN..=f64::MAX, at open.nodata
     };
@@ -177,7 +177,7 @@ Terrain(TerrainOptions, "Terrain") {
     /// between them [default: full]
     #[arg(
         long, value_name = "off|finest|full", hide_possible_values = true,
-        value_parser = relief_parser()
+        value_parser = one_of(RELIEF)
     )]
     relief: Option<ReliefLevels> => {
         /// `--relief`: off, finest or full.

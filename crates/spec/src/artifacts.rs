@@ -103,38 +103,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
-    pub const ALL: [Self; 29] = [
-        Self::InputHash,
-        Self::RoadPieces,
-        Self::RoadLengths,
-        Self::Defects,
-        Self::RoadTotals,
-        Self::Heights,
-        Self::Patch,
-        Self::Raster,
-        Self::Tin,
-        Self::Record,
-        Self::Payload,
-        Self::Subtree,
-        Self::Top,
-        Self::Ways,
-        Self::Located,
-        Self::WayDefects,
-        Self::WaysShare,
-        Self::Places,
-        Self::NodesShare,
-        Self::PhotoTexture,
-        Self::PhotoRaster,
-        Self::AreaSection,
-        Self::AreaTotals,
-        Self::BoundarySection,
-        Self::BoundaryTotals,
-        Self::SpanRoads,
-        Self::SpanGround,
-        Self::SpanSection,
-        Self::SpanTotals,
-    ];
+    /// The one with the largest number.
+    pub const LAST: Self = Self::SpanTotals;
 
     /// The key of what belongs to a tile.
     #[must_use]

@@ -91,20 +91,25 @@ impl Inputs {
 
     /// Says which elevation files are used, in their order; the parts of each go with it.
     pub fn use_only(&mut self, is_used: &[bool]) {
-        let mut is_used = is_used.iter();
-        let mut last = true;
-        for input in &mut self.files {
-            match input.kind {
-                InputKind::Dem => last = is_used.next().copied().unwrap_or(true),
-                InputKind::DemPart => {}
-                InputKind::Photo
-                | InputKind::PhotoPart
-                | InputKind::Terrain
-                | InputKind::Polygon
-                | InputKind::Osm => continue,
-            }
-            input.is_used = last;
+        for (index, is_used) in self.of_elevation(is_used, true) {
+            self.files[index].is_used = is_used;
         }
+    }
+
+    /// The places of elevation files, each with what is said of it in their order, and of their parts, which go with them.
+    fn of_elevation(&self, said: &[bool], otherwise: bool) -> Vec<(usize, bool)> {
+        let mut said = said.iter();
+        let mut last = otherwise;
+        let mut found = Vec::new();
+        for (index, input) in self.files.iter().enumerate() {
+            match input.kind {
+                InputKind::Dem => last = said.next().copied().unwrap_or(otherwise),
+                InputKind::DemPart => {}
+                _ => continue,
+            }
+            found.push((index, last));
+        }
+        found
     }
 
     /// How many files there are.
@@ -179,16 +184,10 @@ impl Inputs {
         is_needed: &[bool],
         observer: &dyn Observer,
     ) -> Result<Vec<(u32, InputRecord)>, InputError> {
-        let mut is_needed = is_needed.iter();
-        let mut last = false;
         let mut found = Vec::new();
-        for (index, input) in self.files.iter().enumerate() {
-            match input.kind {
-                InputKind::Dem => last = is_needed.next().copied().unwrap_or_default(),
-                InputKind::DemPart => {}
-                _ => continue,
-            }
-            if last && !input.is_used {
+        for (index, is_needed) in self.of_elevation(is_needed, false) {
+            let input = &self.files[index];
+            if is_needed && !input.is_used {
                 found.push((index as u32, input.hash_content(observer)?));
             }
         }
@@ -331,15 +330,14 @@ impl Input {
     }
 
     fn hash(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
-        if !self.is_used {
-            return Ok(InputRecord {
-                kind: self.kind.name().to_owned(),
-                name: self.name.clone(),
-                bytes: self.content_bytes().unwrap_or_default(),
-                sha256: String::new(),
-            });
+        if self.is_used {
+            return self.hash_content(observer);
         }
-        self.hash_content(observer)
+        Ok(self.record(self.content_bytes().unwrap_or_default(), String::new()))
+    }
+
+    fn record(&self, bytes: u64, sha256: String) -> InputRecord {
+        InputRecord { kind: self.kind.name().to_owned(), name: self.name.clone(), bytes, sha256 }
     }
 
     fn hash_content(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
@@ -356,12 +354,7 @@ impl Input {
                 digest(&mut file, &mut hasher, observer).map_err(failed)?
             }
         };
-        Ok(InputRecord {
-            kind: self.kind.name().to_owned(),
-            name: self.name.clone(),
-            bytes: bytes.ok_or(InputError::Interrupted)?,
-            sha256: hex(&hasher.finalize()),
-        })
+        Ok(self.record(bytes.ok_or(InputError::Interrupted)?, hex(&hasher.finalize())))
     }
 }
 

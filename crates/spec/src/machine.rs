@@ -86,14 +86,6 @@ impl FileSystem {
     }
 }
 
-/// Space that this user can fill in the file system of a folder that exists, bytes.
-///
-/// # Errors
-/// When the system does not tell.
-pub fn free_bytes(folder: &Path) -> io::Result<u64> {
-    Ok(FileSystem::of(folder)?.free_bytes)
-}
-
 #[cfg(test)]
 #[path = "machine_tests.rs"]
 mod tests;

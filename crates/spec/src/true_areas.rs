@@ -35,7 +35,8 @@ pub fn degrees_ring_m2(ring_deg: &[[f64; 2]], projection: &dyn Projection) -> f6
     ring_area_m2(ring_deg, &side, &|at| degrees(projection, at))
 }
 
-fn degrees(projection: &dyn Projection, at: [f64; 2]) -> [f64; 2] {
+/// Longitude and latitude of a place; no numbers where it has none.
+pub(crate) fn degrees(projection: &dyn Projection, at: [f64; 2]) -> [f64; 2] {
     let mut places = [at];
     match projection.wgs84_from_working(&mut places) {
         Ok(()) => places[0],

@@ -6,6 +6,8 @@ use corniche_geom::{
     known_line_length_m, line_length_m, wgs84,
 };
 
+use crate::true_areas::degrees;
+
 /// Micrometres in a metre.
 pub const UM: f64 = 1e6;
 
@@ -85,11 +87,7 @@ impl<'a> TrueLengths<'a> {
         if let Some(table) = table {
             return table.wgs84_from_working(at);
         }
-        let mut places = [at];
-        match self.projection.wgs84_from_working(&mut places) {
-            Ok(()) => places[0],
-            Err(_) => [f64::NAN; 2],
-        }
+        degrees(self.projection, at)
     }
 
     /// Where a share of a segment of this length ends, in whole micrometres from its start.

@@ -11,6 +11,8 @@ use corniche_presets::{
     is_photo_off,
 };
 
+use super::voice::json_progress;
+
 // What to make and with what: the same for `build` and `plan`.
 #[derive(Debug, Args)]
 pub(crate) struct WorkArgs {
@@ -49,6 +51,7 @@ impl WorkArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(arg = json_progress())]
 pub(crate) struct BuildArgs {
     /// The package to write (.pmtiles)
     #[arg(short, long, value_name = "PACKAGE", required_unless_present = "config")]
@@ -65,8 +68,6 @@ pub(crate) struct BuildArgs {
     pub(crate) defects: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) work: WorkArgs,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
@@ -88,12 +89,4 @@ pub(crate) struct PlanArgs {
     pub(crate) jobs: Option<NonZeroU32>,
     #[command(flatten)]
     pub(crate) work: WorkArgs,
-}
-
-#[derive(Debug, Clone, Copy, Args)]
-#[command(next_help_heading = "Progress")]
-pub(crate) struct ReportArgs {
-    /// Print progress, warnings and the end on standard error, as one JSON object per line
-    #[arg(long, conflicts_with = "quiet")]
-    pub(crate) json_progress: bool,
 }

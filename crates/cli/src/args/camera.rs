@@ -56,7 +56,7 @@ impl CameraArgs {
 pub(crate) struct FromAboveArgs {
     /// Look straight down with parallel rays, as on a map: every place at the same scale, north up unless --heading says otherwise
     #[arg(long, conflicts_with_all = ["height", "distance", "pitch"])]
-    ortho: bool,
+    pub(crate) ortho: bool,
     /// With --ortho and --look-at: side of a pixel on the ground, in metres [default: 5]
     #[arg(long, value_name = "METRES", requires = "ortho", requires = "look_at")]
     pixel: Option<f64>,
@@ -93,11 +93,6 @@ impl PrintScale {
 }
 
 impl FromAboveArgs {
-    /// Whether the picture is one from above.
-    pub(crate) fn is_from_above(&self) -> bool {
-        self.ortho
-    }
-
     /// The scale in print, if one was asked for.
     pub(crate) fn print_scale(&self) -> Option<PrintScale> {
         let dots_per_inch = self.dpi.unwrap_or(DEFAULT_DPI);

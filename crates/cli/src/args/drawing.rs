@@ -2,12 +2,14 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use corniche_presets::{Words, one_of};
+use corniche_viewer::Detail;
 
 use super::{
     camera::{CameraArgs, FromAboveArgs},
     ground::GroundArgs,
-    look::{COMPARING, LookArgs, Roads},
+    look::{COMPARING, LookArgs, ROADS, Roads},
     shared::{GpuArgs, PackageArg},
     values::{parse_size, parse_title},
 };
@@ -55,27 +57,11 @@ pub(crate) struct RenderArgs {
 }
 
 /// How much of the ground is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Lod {
-    /// All finest tiles, in view or not
-    Full,
-    /// The finest tiles in view
-    Culled,
-    /// Tiles by screen-space error, loaded on the way
-    #[value(name = "lod")]
-    Adaptive,
-}
-
-impl Lod {
-    /// Its name on the command line.
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Full => "full",
-            Self::Culled => "culled",
-            Self::Adaptive => "lod",
-        }
-    }
-}
+pub(crate) const DETAILS: Words<Detail, 3> = [
+    ("full", "All finest tiles, in view or not", Detail::Full),
+    ("culled", "The finest tiles in view", Detail::Culled),
+    ("lod", "Tiles by screen-space error, loaded on the way", Detail::Adaptive),
+];
 
 #[derive(Debug, Args)]
 pub(crate) struct FlyArgs {
@@ -125,11 +111,11 @@ pub(crate) struct FlightArgs {
 #[command(next_help_heading = "Drawing")]
 pub(crate) struct DrawingArgs {
     /// How roads are drawn; with several, separated by commas, the flight is taken with each
-    #[arg(long, value_enum, value_delimiter = ',', default_value = Roads::DEFAULT.word())]
+    #[arg(long, value_parser = one_of(ROADS), value_delimiter = ',', default_value = Roads::DEFAULT.word())]
     pub(crate) roads: Vec<Roads>,
     /// How much of the ground is drawn; with several, the flight is taken with each
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "lod")]
-    pub(crate) lod: Vec<Lod>,
+    #[arg(long, value_parser = one_of(DETAILS), value_delimiter = ',', default_value = "lod")]
+    pub(crate) lod: Vec<Detail>,
     /// Width and height in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x1200", value_parser = parse_size)]
     pub(crate) size: [u32; 2],

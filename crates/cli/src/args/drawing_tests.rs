@@ -12,7 +12,7 @@ fn one_flight_may_be_taken_with_several_methods() {
         panic!("{line} is a flight");
     };
     assert_eq!(args.drawing.roads, [Roads::None, Roads::Geo, Roads::Sv, Roads::SvNoCaps]);
-    assert_eq!(args.drawing.lod, [Lod::Full, Lod::Culled, Lod::Adaptive]);
+    assert_eq!(args.drawing.lod, [Detail::Full, Detail::Culled, Detail::Adaptive]);
     let both = "corniche fly a -o b --frames 3 --step 0.1";
     assert!(Arguments::try_parse_from(both.split(' ')).is_err());
 }

@@ -2,28 +2,23 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgAction, Args, Subcommand, ValueEnum, ValueHint, builder::TypedValueParser};
+use clap::{ArgAction, Args, Subcommand, ValueHint};
 use corniche_areas::{AreaClass, ClassedLayer, LineClass};
 use corniche_export::{
-    Availability, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
+    Availability, Coordinates, MeshFormat, ModelRoads, TileRoads, Tiling, UpAxis, VectorFormat,
 };
+use corniche_presets::{Words, one_of};
 use corniche_remote::PackagePlace;
 
 use super::{
-    ReportArgs,
     shared::{
         BoundsArg, ClassesArg, DatumArg, ExtractArgs, FileArgs, FolderArgs, LevelArg, PackageArg,
         RecordedArgs, RoadArg, ThreadsArg,
     },
-    values::{one_of, package_among, package_place},
+    values::{package_among, package_place},
+    voice::json_progress,
 };
 use crate::failure::Failure;
-
-#[derive(Debug, Args)]
-pub(crate) struct ExportArgs {
-    #[command(subcommand)]
-    pub(crate) what: Export,
-}
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Export {
@@ -50,16 +45,13 @@ pub(crate) enum Export {
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     override_usage = "corniche export roads [OPTIONS] --output <FILE> <PACKAGE>",
     mut_arg("level", |arg| arg.help("The level whose roads are taken [default: the finest]")),
     mut_arg("dem", |arg| arg.help("The elevation rasters the package was made from, in the same order: heights are theirs, not those of the package's triangles")),
     mut_arg("osm", |arg| arg.requires("dem")),
 )]
 pub(crate) struct ExportRoadsArgs {
-    #[command(flatten)]
-    pub(crate) from: RecordedArgs,
-    #[command(flatten)]
-    pub(crate) extract: ExtractArgs,
     #[command(flatten)]
     pub(crate) vector: VectorArgs,
     #[command(flatten)]
@@ -73,46 +65,43 @@ pub(crate) struct ExportRoadsArgs {
     pub(crate) within: BoundsArg,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     override_usage = "corniche export edges [OPTIONS] --output <FILE> --dem <FILE>... --osm <FILE>... <PACKAGE>",
     mut_arg("dem", |arg| arg.required(true)),
     mut_arg("osm", |arg| arg.required(true).help("The extracts the package was made from: roads join where they name the same node")),
 )]
 pub(crate) struct ExportEdgesArgs {
     #[command(flatten)]
-    pub(crate) from: RecordedArgs,
-    #[command(flatten)]
-    pub(crate) extract: ExtractArgs,
-    #[command(flatten)]
     pub(crate) vector: VectorArgs,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 // What exports of lines with heights have.
 #[derive(Debug, Args)]
 pub(crate) struct VectorArgs {
     #[command(flatten)]
+    pub(crate) from: RecordedArgs,
+    #[command(flatten)]
+    pub(crate) extract: ExtractArgs,
+    #[command(flatten)]
     pub(crate) file: FileArgs,
     #[command(flatten)]
     pub(crate) road: RoadArg,
     /// The format of a file with another ending
-    #[arg(short, long, value_parser = vector_format(), value_name = "FORMAT")]
+    #[arg(short, long, value_parser = one_of(VECTOR_FORMATS), value_name = "FORMAT")]
     pub(crate) format: Option<VectorFormat>,
     /// The coordinates: "package", "EPSG:4979" (with heights above the ellipsoid of WGS84), "EPSG:4326", or a projected CRS such as "EPSG:2056" [default:
     /// package; GeoJSON: EPSG:4326]
     #[arg(long, value_name = "CRS", value_parser = parse_crs)]
-    pub(crate) crs: Option<ExportCrs>,
+    pub(crate) crs: Option<Coordinates>,
     /// Keep the package's heights as they are: --crs EPSG:4979 is then EPSG:4326
-    #[arg(long, value_enum, value_name = "as-is")]
-    pub(crate) heights: Option<Heights>,
+    #[arg(long, value_parser = one_of(HEIGHTS), value_name = "as-is")]
+    pub(crate) heights: Option<Coordinates>,
     #[command(flatten)]
     pub(crate) datum: DatumArg,
 }
@@ -123,7 +112,7 @@ pub(crate) struct InPlanArgs {
     #[command(flatten)]
     pub(crate) file: FileArgs,
     /// The format of a file with another ending
-    #[arg(short, long, value_parser = vector_format(), value_name = "FORMAT")]
+    #[arg(short, long, value_parser = one_of(VECTOR_FORMATS), value_name = "FORMAT")]
     pub(crate) format: Option<VectorFormat>,
     #[command(flatten)]
     pub(crate) at: LevelArg,
@@ -132,11 +121,12 @@ pub(crate) struct InPlanArgs {
     /// The coordinates: "package" (its CRS), "EPSG:4326" (longitude and latitude of WGS84), or a projected CRS such as "EPSG:2056" [default: package; GeoJSON:
     /// EPSG:4326]
     #[arg(long, value_name = "CRS", value_parser = parse_plan_crs)]
-    pub(crate) crs: Option<ExportCrs>,
+    pub(crate) crs: Option<Coordinates>,
 }
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     mut_arg("level", |arg| arg.help("The level whose areas are taken [default: the finest]")),
     mut_arg("bounds", |arg| arg.help("Cut areas at a rectangle of WGS84 degrees; a west beyond the east crosses 180°")),
 )]
@@ -148,12 +138,11 @@ pub(crate) struct ExportAreasArgs {
     /// Classes that are taken, such as water,forest [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_area_class)]
     pub(crate) classes: Vec<AreaClass>,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     mut_arg("level", |arg| arg.help("The level whose boundaries are taken [default: the finest]")),
     mut_arg("bounds", |arg| arg.help("Cut boundaries at a rectangle of WGS84 degrees; a west beyond the east crosses 180°")),
     mut_arg("osm", |arg| arg.help("The extracts the package was made from: boundaries then have the names of what they bound")),
@@ -171,8 +160,6 @@ pub(crate) struct ExportBoundariesArgs {
     pub(crate) extract: ExtractArgs,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 impl ExportBoundariesArgs {
@@ -189,6 +176,7 @@ impl ExportBoundariesArgs {
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     mut_arg("output", |arg| arg.help("The file to write; its ending is its format: .glb, .ply or .obj")),
     mut_arg("bounds", |arg| arg.help("Take what lies in a rectangle of WGS84 degrees, in whole triangles; a west beyond the east crosses 180°")),
 )]
@@ -198,7 +186,7 @@ pub(crate) struct ExportMeshArgs {
     #[command(flatten)]
     pub(crate) file: FileArgs,
     /// The format of a file with another ending
-    #[arg(short, long, value_parser = model_format(), value_name = "FORMAT")]
+    #[arg(short, long, value_parser = one_of(MODEL_FORMATS), value_name = "FORMAT")]
     pub(crate) format: Option<MeshFormat>,
     #[command(flatten)]
     pub(crate) at: LevelArg,
@@ -207,7 +195,7 @@ pub(crate) struct ExportMeshArgs {
     /// How roads are there: lines (centre-lines on the ground), surfaces (of their true width, in the ground's own triangles) or none; bridges are slabs of surfaces if the package has spans
     #[arg(
         long,
-        value_parser = model_roads(),
+        value_parser = one_of(MODEL_ROADS),
         default_value = "lines",
         value_name = "HOW",
         hide_possible_values = true
@@ -219,7 +207,7 @@ pub(crate) struct ExportMeshArgs {
     #[command(flatten)]
     pub(crate) filter: ClassesArg,
     /// With .glb: normal maps of the ground from the package's relief [default: on for .glb]
-    #[arg(long, value_parser = on_or_none(), value_name = "on|none", hide_possible_values = true)]
+    #[arg(long, value_parser = one_of(ON_NONE), value_name = "on|none", hide_possible_values = true)]
     pub(crate) relief: Option<bool>,
     /// The axis that points up: y (x east, z south) or z (x east, y north) [default: z for .ply, else y]
     #[arg(
@@ -228,12 +216,11 @@ pub(crate) struct ExportMeshArgs {
         value_name = "AXIS"
     )]
     pub(crate) up: Option<UpAxis>,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     override_usage = "corniche export geotiff [OPTIONS] --output <FILE> <PACKAGE>",
     mut_arg("output", |arg| arg.help("The file to write: .tif or .tiff")),
     mut_arg("dem", |arg| arg.help("The elevation rasters the package was made from, in the same order: a second band has TIN minus DEM")),
@@ -253,12 +240,10 @@ pub(crate) struct ExportGeoTiffArgs {
     pub(crate) datum: DatumArg,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
-#[command(mut_arg("bounds", |arg| arg.help("Take the tiles that meet a rectangle of WGS84 degrees, whole: coarse ones reach far beyond it; a west beyond the east crosses 180°")))]
+#[command(arg = json_progress(), mut_arg("bounds", |arg| arg.help("Take the tiles that meet a rectangle of WGS84 degrees, whole: coarse ones reach far beyond it; a west beyond the east crosses 180°")))]
 pub(crate) struct ExportTiles3dArgs {
     #[command(flatten)]
     pub(crate) from: PackageArg,
@@ -269,7 +254,7 @@ pub(crate) struct ExportTiles3dArgs {
     /// vector content is in a second tileset, roads/tileset.json, a draft, and not valid glTF 2.0 for others
     #[arg(
         long,
-        value_parser = tile_roads(),
+        value_parser = one_of(TILE_ROADS),
         default_value = "cut",
         value_name = "HOW",
         hide_possible_values = true
@@ -289,7 +274,7 @@ pub(crate) struct ExportTiles3dArgs {
     #[arg(
         long,
         action = ArgAction::Set,
-        value_parser = on_or_none(),
+        value_parser = one_of(ON_NONE),
         default_value = "on",
         value_name = "on|none",
         hide_possible_values = true
@@ -299,7 +284,7 @@ pub(crate) struct ExportTiles3dArgs {
     #[arg(
         long,
         action = ArgAction::Set,
-        value_parser = on_or_none(),
+        value_parser = one_of(ON_NONE),
         default_value = "on",
         value_name = "on|none",
         hide_possible_values = true
@@ -316,18 +301,17 @@ pub(crate) struct ExportTiles3dArgs {
     )]
     pub(crate) compress: bool,
     /// Keep the package's heights as they are, although 3D Tiles count heights from the ellipsoid of WGS84
-    #[arg(long, value_enum, value_name = "as-is")]
-    pub(crate) heights: Option<Heights>,
+    #[arg(long, value_parser = one_of(HEIGHTS), value_name = "as-is")]
+    pub(crate) heights: Option<Coordinates>,
     #[command(flatten)]
     pub(crate) datum: DatumArg,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     mut_arg("output", |arg| arg.help("The folder to write: layer.json and a folder for each level")),
     mut_arg("bounds", |arg| arg.help("Take the tiles of the finest level that meet a rectangle of WGS84 degrees, whole, and those above them; a west beyond the east crosses 180°")),
 )]
@@ -379,94 +363,50 @@ pub(crate) struct ExportQuantizedMeshArgs {
     )]
     pub(crate) compress: bool,
     /// Keep the package's heights as they are, although quantized-mesh counts heights from the ellipsoid of WGS84
-    #[arg(long, value_enum, value_name = "as-is")]
-    pub(crate) heights: Option<Heights>,
+    #[arg(long, value_parser = one_of(HEIGHTS), value_name = "as-is")]
+    pub(crate) heights: Option<Coordinates>,
     #[command(flatten)]
     pub(crate) datum: DatumArg,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
-}
-
-impl Export {
-    /// How progress is told.
-    pub(crate) fn report(&self) -> ReportArgs {
-        match self {
-            Self::Roads(args) => args.report,
-            Self::Edges(args) => args.report,
-            Self::Areas(args) => args.report,
-            Self::Boundaries(args) => args.report,
-            Self::Mesh(args) => args.report,
-            Self::GeoTiff(args) => args.report,
-            Self::Tiles3d(args) => args.report,
-            Self::QuantizedMesh(args) => args.report,
-        }
-    }
 }
 
 /// What 3D Tiles have of roads.
-fn tile_roads() -> impl TypedValueParser<Value = TileRoads> {
-    one_of([
-        ("cut", "Surfaces in the ground's triangles", TileRoads::Cut),
-        ("line", "Centre-lines above the ground", TileRoads::Line),
-        ("vector", "Centre-lines as vector content", TileRoads::Vector),
-        ("none", "Nothing", TileRoads::None),
-    ])
-}
+const TILE_ROADS: Words<TileRoads, 4> = [
+    ("cut", "Surfaces in the ground's triangles", TileRoads::Cut),
+    ("line", "Centre-lines above the ground", TileRoads::Line),
+    ("vector", "Centre-lines as vector content", TileRoads::Vector),
+    ("none", "Nothing", TileRoads::None),
+];
 
 /// What a model has of roads.
-fn model_roads() -> impl TypedValueParser<Value = ModelRoads> {
-    one_of([
-        ("lines", "Their centre-lines on the ground", ModelRoads::Lines),
-        ("surfaces", "Surfaces in the ground's own triangles", ModelRoads::Surfaces),
-        ("none", "Nothing", ModelRoads::None),
-    ])
-}
+const MODEL_ROADS: Words<ModelRoads, 3> = [
+    ("lines", "Their centre-lines on the ground", ModelRoads::Lines),
+    ("surfaces", "Surfaces in the ground's own triangles", ModelRoads::Surfaces),
+    ("none", "Nothing", ModelRoads::None),
+];
 
 /// Whether an export has something: normal maps of the ground, walls below the borders of tiles.
-fn on_or_none() -> impl TypedValueParser<Value = bool> {
-    one_of([("on", "", true), ("none", "", false)])
-}
+const ON_NONE: Words<bool, 2> = [("on", "", true), ("none", "", false)];
+
+/// What becomes of heights in degrees of WGS84.
+const HEIGHTS: Words<Coordinates, 1> =
+    [("as-is", "The package's heights", Coordinates::Wgs84WithPackageHeights)];
 
 /// Formats of models by the endings of their files.
-fn model_format() -> impl TypedValueParser<Value = MeshFormat> {
-    one_of([
-        ("glb", "Binary glTF 2.0", MeshFormat::Glb),
-        ("ply", "PLY, binary, positions in double precision", MeshFormat::Ply),
-        ("obj", "Wavefront OBJ", MeshFormat::Obj),
-    ])
-}
+const MODEL_FORMATS: Words<MeshFormat, 3> = [
+    ("glb", "Binary glTF 2.0", MeshFormat::Glb),
+    ("ply", "PLY, binary, positions in double precision", MeshFormat::Ply),
+    ("obj", "Wavefront OBJ", MeshFormat::Obj),
+];
 
 /// Formats of features by the endings of their files.
-fn vector_format() -> impl TypedValueParser<Value = VectorFormat> {
-    one_of([
-        ("gpkg", "GeoPackage", VectorFormat::GeoPackage),
-        ("fgb", "FlatGeobuf", VectorFormat::FlatGeobuf),
-        ("geojson", "GeoJSON (RFC 7946)", VectorFormat::GeoJson),
-        ("csv", "Comma-separated values, geometries as WKT", VectorFormat::Csv),
-    ])
-}
-
-/// What `--crs` names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ExportCrs {
-    /// The package's own.
-    Package,
-    /// WGS84 in three dimensions (EPSG:4979).
-    Wgs84,
-    /// WGS84 in two (EPSG:4326).
-    Degrees,
-    /// A projected system of the EPSG registry.
-    Epsg(u32),
-}
-
-/// What becomes of heights in another CRS.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Heights {
-    /// The package's heights
-    AsIs,
-}
+const VECTOR_FORMATS: Words<VectorFormat, 4> = [
+    ("gpkg", "GeoPackage", VectorFormat::GeoPackage),
+    ("fgb", "FlatGeobuf", VectorFormat::FlatGeobuf),
+    ("geojson", "GeoJSON (RFC 7946)", VectorFormat::GeoJson),
+    ("csv", "Comma-separated values, geometries as WKT", VectorFormat::Csv),
+];
 
 fn parse_area_class(text: &str) -> Result<AreaClass, String> {
     AreaClass::from_name(text).ok_or_else(|| other_classes("areas", &AreaClass::ALL))
@@ -483,18 +423,18 @@ fn other_classes(layer: &str, classes: &[impl ToString]) -> String {
     format!("classes of {layer} are {}", names.join(", "))
 }
 
-fn parse_plan_crs(text: &str) -> Result<ExportCrs, String> {
+fn parse_plan_crs(text: &str) -> Result<Coordinates, String> {
     match parse_crs(text)? {
-        ExportCrs::Wgs84 => {
+        Coordinates::Wgs84 => {
             Err("EPSG:4979 has heights, which these layers have not; give EPSG:4326".to_owned())
         }
         crs => Ok(crs),
     }
 }
 
-fn parse_crs(text: &str) -> Result<ExportCrs, String> {
+fn parse_crs(text: &str) -> Result<Coordinates, String> {
     if text == "package" {
-        return Ok(ExportCrs::Package);
+        return Ok(Coordinates::Package);
     }
     let code = match text.split_once(':') {
         Some((registry, code)) if registry.trim().eq_ignore_ascii_case("EPSG") => Some(code),
@@ -502,9 +442,9 @@ fn parse_crs(text: &str) -> Result<ExportCrs, String> {
         None => Some(text),
     };
     match code.and_then(|code| code.trim().parse().ok()) {
-        Some(4979) => Ok(ExportCrs::Wgs84),
-        Some(4326) => Ok(ExportCrs::Degrees),
-        Some(code) => Ok(ExportCrs::Epsg(code)),
+        Some(4979) => Ok(Coordinates::Wgs84),
+        Some(4326) => Ok(Coordinates::Wgs84WithPackageHeights),
+        Some(code) => Ok(Coordinates::Epsg(code)),
         None => Err(
             "give \"package\", EPSG:4326 or a projected CRS as EPSG:n; for others use ogr2ogr -t_srs on the result".to_owned()
         ),

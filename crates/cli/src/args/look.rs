@@ -1,17 +1,16 @@
 //! How roads are drawn and how everything looks, for all commands that draw.
 
-use clap::{
-    Args, ValueEnum,
-    builder::{PossibleValuesParser, TypedValueParser},
-};
+use clap::{Args, builder::TypedValueParser};
+use corniche_presets::{Words, one_of};
 use corniche_styles::Style;
 use corniche_viewer::{
     CapTest, Caps, ClassSet, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,
 };
+use corniche_window::Visibility;
 
 use super::{
     overlay::{self, OverlayArg},
-    values::one_of,
+    values::word_of,
 };
 use crate::failure::Failure;
 
@@ -19,19 +18,23 @@ use crate::failure::Failure;
 pub(crate) const COMPARING: &str = "Comparing with the papers";
 
 /// How roads are drawn. The methods without caps are named by `fly` alone, which can so take one flight with and without.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Roads {
-    /// As geometry on the TIN
     Geo,
-    /// As geometry on the TIN, cut off straight at every point
     GeoNoCaps,
-    /// As shadow volumes: exact to the pixel, also on steep ground
     Sv,
-    /// As shadow volumes, cut off straight at every point
     SvNoCaps,
-    /// Not at all
     None,
 }
+
+/// All values of `--roads`.
+pub(crate) const ROADS: Words<Roads, 5> = [
+    ("geo", "As geometry on the TIN", Roads::Geo),
+    ("geo-no-caps", "As geometry on the TIN, cut off straight at every point", Roads::GeoNoCaps),
+    ("sv", "As shadow volumes: exact to the pixel, also on steep ground", Roads::Sv),
+    ("sv-no-caps", "As shadow volumes, cut off straight at every point", Roads::SvNoCaps),
+    ("none", "Not at all", Roads::None),
+];
 
 impl Roads {
     /// What all commands draw where nothing is said: exact to the pixel on every ground.
@@ -39,13 +42,7 @@ impl Roads {
 
     /// Its name on the command line.
     pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Geo => "geo",
-            Self::GeoNoCaps => "geo-no-caps",
-            Self::Sv => "sv",
-            Self::SvNoCaps => "sv-no-caps",
-            Self::None => "none",
-        }
+        word_of(&ROADS, &self)
     }
 
     pub(crate) fn method(self) -> RoadMethod {
@@ -58,9 +55,8 @@ impl Roads {
 
     /// The value of `--roads` in commands that draw with one method; whether roads have caps is said by `--caps` there.
     pub(crate) fn one_method() -> impl TypedValueParser<Value = Self> {
-        let methods = [Self::Geo, Self::Sv, Self::None];
-        PossibleValuesParser::new(methods.iter().filter_map(ValueEnum::to_possible_value))
-            .try_map(|word| Self::from_str(&word, false))
+        let [geo, _, sv, _, none] = ROADS;
+        one_of([geo, sv, none])
     }
 
     /// The same method drawn without caps.
@@ -79,78 +75,53 @@ impl Roads {
 }
 
 /// Whether areas, or boundaries, are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum OnOff {
-    /// Those that the style draws
-    On,
-    /// None
-    Off,
-}
-
-impl OnOff {
-    /// The same for a window.
-    pub(crate) fn in_window(self) -> corniche_window::Visibility {
-        match self {
-            Self::On => corniche_window::Visibility::Shown,
-            Self::Off => corniche_window::Visibility::Hidden,
-        }
-    }
-}
+const ON_OFF: Words<Visibility, 2> =
+    [("on", "Those that the style draws", Visibility::Shown), ("off", "None", Visibility::Hidden)];
 
 /// How roads begin, bend and end.
-fn caps() -> impl TypedValueParser<Value = Caps> {
-    one_of([
-        ("round", "With a half disc around every point", Caps::Round),
-        ("none", "Cut off straight at every point", Caps::None),
-    ])
-}
+const CAPS: Words<Caps, 2> = [
+    ("round", "With a half disc around every point", Caps::Round),
+    ("none", "Cut off straight at every point", Caps::None),
+];
 
 /// How widths depend on the distance from the eye.
-fn width_growth() -> impl TypedValueParser<Value = WidthGrowth> {
-    one_of([
-        ("none", "True widths", WidthGrowth::None),
-        ("constant", "True widths times the style's constant", WidthGrowth::Constant),
-        (
-            "distance",
-            "True widths near the eye, growing beyond the style's threshold",
-            WidthGrowth::ByDistance,
-        ),
-    ])
-}
+pub(crate) const WIDTH_GROWTHS: Words<WidthGrowth, 3> = [
+    ("none", "True widths", WidthGrowth::None),
+    ("constant", "True widths times the style's constant", WidthGrowth::Constant),
+    (
+        "distance",
+        "True widths near the eye, growing beyond the style's threshold",
+        WidthGrowth::ByDistance,
+    ),
+];
 
 /// The edge of roads.
-fn outline() -> impl TypedValueParser<Value = Outline> {
-    one_of([
-        ("style", "As wide as the style says", Outline::OfStyle),
-        ("none", "None", Outline::None),
-        ("3", "One pixel, by a kernel of 3 × 3", Outline::Kernel3),
-        ("5", "Two pixels, by a kernel of 5 × 5", Outline::Kernel5),
-    ])
-}
+pub(crate) const OUTLINES: Words<Outline, 4> = [
+    ("style", "As wide as the style says", Outline::OfStyle),
+    ("none", "None", Outline::None),
+    ("3", "One pixel, by a kernel of 3 × 3", Outline::Kernel3),
+    ("5", "Two pixels, by a kernel of 5 × 5", Outline::Kernel5),
+];
 
 /// How a fragment of a shadow volume finds out whether the ground it sees is road.
-fn cap_test() -> impl TypedValueParser<Value = CapTest> {
-    one_of([
-        ("distance", "By the distance in plan: exact far from the eye too", CapTest::Distance),
-        (
-            "paper",
-            "By the paper's formula, for comparison: loses precision far from the eye",
-            CapTest::PaperQuadratic,
-        ),
-    ])
-}
+const CAP_TESTS: Words<CapTest, 2> = [
+    ("distance", "By the distance in plan: exact far from the eye too", CapTest::Distance),
+    (
+        "paper",
+        "By the paper's formula, for comparison: loses precision far from the eye",
+        CapTest::PaperQuadratic,
+    ),
+];
 
 /// What the quad of a piece of road covers.
-fn quads() -> impl TypedValueParser<Value = Quads> {
-    one_of([
-        ("beds", "All ground beside the piece, within the road's width", Quads::Beds),
-        (
-            "level",
-            "What lies as high as the piece, as in the paper, for comparison: roads on slopes are too narrow",
-            Quads::Level,
-        ),
-    ])
-}
+const QUADS: Words<Quads, 2> = [
+    ("beds", "All ground beside the piece, within the road's width", Quads::Beds),
+    (
+        "level",
+        "What lies as high as the piece, as in the paper, for comparison: roads on slopes are too narrow",
+        Quads::Level,
+    ),
+];
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Look")]
@@ -162,11 +133,11 @@ pub(crate) struct LookArgs {
     #[arg(long, value_name = "off|SHARE", value_parser = parse_strength)]
     pub(crate) photo: Option<f32>,
     /// Areas (water, forest …), where the package has some: as the style draws them, or off
-    #[arg(long, value_enum, default_value_t = OnOff::On)]
-    pub(crate) areas: OnOff,
+    #[arg(long, value_parser = one_of(ON_OFF), default_value = "on")]
+    pub(crate) areas: Visibility,
     /// Boundaries, where the package has some: as the style draws them, or off
-    #[arg(long, value_enum, default_value_t = OnOff::On)]
-    pub(crate) boundaries: OnOff,
+    #[arg(long, value_parser = one_of(ON_OFF), default_value = "on")]
+    pub(crate) boundaries: Visibility,
     /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; give it again for another file
     ///
     /// Behind the file's name: ,color=COLOUR (#C21E8A or tomato) ,width=PIXELS ,opacity=SHARE ,dash=DASH/GAP ,pattern=dots/PX (or beads, arrows) in pixels.
@@ -176,19 +147,19 @@ pub(crate) struct LookArgs {
     #[arg(long, requires = "overlay")]
     pub(crate) allow_ballpark: bool,
     /// How roads begin, bend and end
-    #[arg(long, value_parser = caps(), default_value = "round", help_heading = COMPARING, hide_short_help = true)]
+    #[arg(long, value_parser = one_of(CAPS), default_value = "round", help_heading = COMPARING, hide_short_help = true)]
     caps: Caps,
     /// How widths depend on the distance from the eye
-    #[arg(long, value_parser = width_growth(), default_value = "distance", help_heading = COMPARING, hide_short_help = true)]
+    #[arg(long, value_parser = one_of(WIDTH_GROWTHS), default_value = "distance", help_heading = COMPARING, hide_short_help = true)]
     width_growth: WidthGrowth,
     /// Outline of roads: the style's, none, or one from a kernel of 3 or 5 pixels
-    #[arg(long, value_parser = outline(), default_value = "style", help_heading = COMPARING, hide_short_help = true)]
+    #[arg(long, value_parser = one_of(OUTLINES), default_value = "style", help_heading = COMPARING, hide_short_help = true)]
     outline: Outline,
     /// How shadow volumes find their round ends [default: distance]
-    #[arg(long, value_parser = cap_test(), help_heading = COMPARING, hide_short_help = true)]
+    #[arg(long, value_parser = one_of(CAP_TESTS), help_heading = COMPARING, hide_short_help = true)]
     cap_test: Option<CapTest>,
     /// What the quads of roads as geometry cover [default: beds]
-    #[arg(long, value_parser = quads(), help_heading = COMPARING, hide_short_help = true)]
+    #[arg(long, value_parser = one_of(QUADS), help_heading = COMPARING, hide_short_help = true)]
     geo_quads: Option<Quads>,
 }
 
@@ -204,12 +175,12 @@ impl LookArgs {
     /// A style, with photos as strong as `--photo` says, and with areas unless `--areas` says otherwise, and with the lines of `--overlay`.
     pub(crate) fn styled(&self, style: Style) -> Style {
         let style = match self.areas {
-            OnOff::On => style,
-            OnOff::Off => style.without_areas(),
+            Visibility::Shown => style,
+            Visibility::Hidden => style.without_areas(),
         };
         let style = match self.boundaries {
-            OnOff::On => style,
-            OnOff::Off => style.without_boundaries(),
+            Visibility::Shown => style,
+            Visibility::Hidden => style.without_boundaries(),
         };
         let style = Style { photo: self.photo.unwrap_or(style.photo), ..style };
         overlay::styled(&self.overlay, style)

@@ -6,7 +6,7 @@ use super::*;
 
 #[derive(Parser)]
 struct Line {
-    #[arg(long, value_enum, value_delimiter = ',')]
+    #[arg(long, value_parser = one_of(ROADS), value_delimiter = ',')]
     roads: Vec<Roads>,
     #[command(flatten)]
     look: LookArgs,

@@ -6,14 +6,15 @@ use clap::{ArgGroup, Args, ValueHint};
 use corniche_remote::PackagePlace;
 
 use super::{
-    ReportArgs,
     shared::ClassesArg,
     values::{package_among, package_place},
+    voice::json_progress,
 };
 use crate::failure::Failure;
 
 #[derive(Debug, Args)]
 #[command(
+    arg = json_progress(),
     group = ArgGroup::new("target").args(["photo", "slope"]).required(true),
     override_usage = "corniche match [OPTIONS] <--photo <FILE>...|--slope> <PACKAGE>",
     group = ArgGroup::new("written").args(["csv", "svg"]).multiple(true),
@@ -33,10 +34,10 @@ pub(crate) struct MatchArgs {
     #[arg(long)]
     pub(crate) slope: bool,
     /// How far beside roads to look, metres, 1 to 500
-    #[arg(long, value_name = "METRES", default_value_t = 30.0, value_parser = parse_radius)]
+    #[arg(long, value_name = "METRES", default_value_t = 30.0, value_parser = |text: &str| metres(text, 500.0))]
     pub(crate) radius: f64,
     /// The side of the squares for which offsets are told, metres
-    #[arg(long, value_name = "METRES", default_value_t = 2000.0, value_parser = parse_metres)]
+    #[arg(long, value_name = "METRES", default_value_t = 2000.0, value_parser = |text: &str| metres(text, 1e6))]
     pub(crate) region: f64,
     #[command(flatten)]
     pub(crate) filter: ClassesArg,
@@ -49,8 +50,6 @@ pub(crate) struct MatchArgs {
     /// Replace files that exist, once the new ones are complete
     #[arg(short = 'O', long, requires = "written")]
     pub(crate) overwrite: bool,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 impl MatchArgs {
@@ -65,16 +64,8 @@ impl MatchArgs {
     }
 }
 
-fn parse_radius(text: &str) -> Result<f64, String> {
-    parse_metres(text)
-        .ok()
-        .filter(|metres| *metres <= 500.0)
-        .ok_or_else(|| "write metres from 1 to 500".to_owned())
-}
-
-fn parse_metres(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|metres| (1.0..=1e6).contains(metres))
-        .ok_or_else(|| "write metres from 1 to 1000000".to_owned())
+/// A number of metres from 1 to the most.
+fn metres(text: &str, most: f64) -> Result<f64, String> {
+    let metres = text.parse().ok().filter(|metres| (1.0..=most).contains(metres));
+    metres.ok_or_else(|| format!("write metres from 1 to {most}"))
 }

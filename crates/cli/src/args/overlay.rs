@@ -1,6 +1,6 @@
 //! `--overlay`: a file of lines and how they are drawn.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use corniche_styles::{Dash, LineStyle, Rgb, Style, parse_color};
 
@@ -8,13 +8,14 @@ use corniche_styles::{Dash, LineStyle, Rgb, Style, parse_color};
 /// `,opacity=SHARE` and `,dash=DASH/GAP` or `,pattern=NAME/PX` in any order.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct OverlayArg {
-    path: PathBuf,
-    color: Option<Rgb>,
+    pub(crate) path: PathBuf,
+    /// Which colour its lines have, if it says so.
+    pub(crate) color: Option<Rgb>,
     width_px: Option<f32>,
     opacity: Option<f32>,
     dash: Option<Dash>,
-    /// As it was given.
-    text: String,
+    /// As it was given on the command line.
+    pub(crate) text: String,
 }
 
 /// Whether a name of an entry is one of a style. What follows another name belongs to the file's name.
@@ -23,20 +24,6 @@ fn is_entry(name: &str) -> bool {
 }
 
 impl OverlayArg {
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// As it was given on the command line.
-    pub(crate) fn text(&self) -> &str {
-        &self.text
-    }
-
-    /// Whether it says which colour its lines have.
-    pub(crate) fn has_color(&self) -> bool {
-        self.color.is_some()
-    }
-
     /// How its lines are drawn; what it does not say is as in `usual`.
     pub(crate) fn style(&self, usual: LineStyle) -> LineStyle {
         LineStyle {

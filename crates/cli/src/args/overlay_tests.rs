@@ -1,5 +1,7 @@
 //! Entries of `--overlay` are read in any order, and mistakes are told.
 
+use std::path::Path;
+
 use super::*;
 
 fn usual() -> LineStyle {
@@ -9,14 +11,14 @@ fn usual() -> LineStyle {
 #[test]
 fn a_file_alone_is_drawn_as_usual() {
     let found = parse("tracks/a,b=c.gpx").unwrap();
-    assert_eq!(found.path(), Path::new("tracks/a,b=c.gpx"), "that is no entry of a style");
+    assert_eq!(found.path, Path::new("tracks/a,b=c.gpx"), "that is no entry of a style");
     assert_eq!(found.style(usual()), usual());
 }
 
 #[test]
 fn entries_may_come_in_any_order() {
     let found = parse("a, b.geojson,width=4.5,color=#FF0000,dash=8/4,opacity=0.5").unwrap();
-    assert_eq!(found.path(), Path::new("a, b.geojson"));
+    assert_eq!(found.path, Path::new("a, b.geojson"));
     let style = found.style(usual());
     assert_eq!((style.width_px, style.opacity, style.color), (4.5, 0.5, [1.0, 0.0, 0.0]));
     let named = parse("a.geojson,color=Red").unwrap();
@@ -34,7 +36,7 @@ fn entries_may_come_in_any_order() {
 #[test]
 fn colours_may_have_commas() {
     let found = parse("a (1,2).gpx,color=rgb(255, 0, 0),width=2").unwrap();
-    assert_eq!(found.path(), Path::new("a (1,2).gpx"));
+    assert_eq!(found.path, Path::new("a (1,2).gpx"));
     let style = found.style(usual());
     assert_eq!((style.width_px, style.color), (2.0, [1.0, 0.0, 0.0]));
 }

@@ -6,8 +6,9 @@ use clap::{Args, builder::TypedValueParser};
 use corniche_geom::TileId;
 use corniche_osm::Share;
 use corniche_pipeline::Step;
+use corniche_presets::one_of;
 
-use super::{ReportArgs, shared::ThreadsArg, values::one_of};
+use super::{shared::ThreadsArg, voice::json_progress};
 use crate::failure::Failure;
 
 /// A step of a build that a process can do alone.
@@ -32,6 +33,7 @@ fn step() -> impl TypedValueParser<Value = Step> {
 
 // Which plan, which stores, and what the run may use: the same for `part` and `merge`.
 #[derive(Debug, Args)]
+#[command(arg = json_progress())]
 pub(crate) struct PlannedArgs {
     /// The plan, made with corniche plan -o
     #[arg(value_name = "PLAN.json")]
@@ -47,8 +49,6 @@ pub(crate) struct PlannedArgs {
     /// The most memory to use, such as 512M, 4G or 1T, at least 256M [default: half of the machine's, at most 4G]
     #[arg(long, value_name = "BYTES")]
     pub(crate) memory: Option<String>,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 impl PlannedArgs {

@@ -8,9 +8,9 @@ use corniche_remote::PackagePlace;
 use corniche_verify::CheckId;
 
 use super::{
-    ReportArgs,
     shared::{PackageArg, ThreadsArg},
     values::{package_among, package_place, parse_position},
+    voice::json_progress,
 };
 use crate::failure::Failure;
 
@@ -37,7 +37,7 @@ pub(crate) struct InfoArgs {
 }
 
 #[derive(Debug, Args)]
-#[command(after_long_help = checks(), override_usage = "corniche verify [OPTIONS] <PACKAGE>")]
+#[command(arg = json_progress(), after_long_help = checks(), override_usage = "corniche verify [OPTIONS] <PACKAGE>")]
 pub(crate) struct VerifyArgs {
     /// The package: a file, or an address on a web server (https://…)
     #[arg(required_unless_present_any = ["dem", "photo", "osm"], value_parser = package_place(), value_hint = ValueHint::AnyPath)]
@@ -65,8 +65,6 @@ pub(crate) struct VerifyArgs {
     /// Print JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,
-    #[command(flatten)]
-    pub(crate) report: ReportArgs,
 }
 
 impl VerifyArgs {
@@ -75,21 +73,11 @@ impl VerifyArgs {
     ///
     /// # Errors
     /// When no package is named, or several may be meant.
-    pub(crate) fn files(&self) -> Result<VerifyFiles, Failure> {
+    pub(crate) fn files(&self) -> Result<(PackagePlace, [Vec<PathBuf>; 3]), Failure> {
         let lists = [&*self.dem, &*self.photo, &*self.osm];
         let usage = "corniche verify PACKAGE --dem FILE...";
-        let (package, [dem, photo, osm]) = package_among(self.package.as_ref(), lists, usage)?;
-        Ok(VerifyFiles { package, dem, photo, osm })
+        package_among(self.package.as_ref(), lists, usage)
     }
-}
-
-/// The files of a verification.
-#[derive(Debug)]
-pub(crate) struct VerifyFiles {
-    pub(crate) package: PackagePlace,
-    pub(crate) dem: Vec<PathBuf>,
-    pub(crate) photo: Vec<PathBuf>,
-    pub(crate) osm: Vec<PathBuf>,
 }
 
 /// What the coordinates in a dump are.

@@ -6,26 +6,18 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use clap::{
-    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
-    error::ErrorKind,
-};
+use clap::{builder::TypedValueParser, error::ErrorKind};
+use corniche_presets::Words;
 use corniche_remote::PackagePlace;
 
 use crate::{failure::Failure, names::is_package_name};
 
-/// One of some values by its word; behind it stands what its help says, if it says anything.
-pub(crate) fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
-    values: [(&'static str, &'static str, T); N],
-) -> impl TypedValueParser<Value = T> {
-    let words = values.map(|(word, help, _)| {
-        let value = PossibleValue::new(word);
-        if help.is_empty() { value } else { value.help(help) }
-    });
-    PossibleValuesParser::new(words).try_map(move |given| {
-        let found = values.iter().find(|(word, ..)| *word == given);
-        found.map(|(_, _, value)| *value).ok_or("it is no value of this option")
-    })
+/// The word of a value.
+pub(crate) fn word_of<T: PartialEq, const N: usize>(
+    values: &Words<T, N>,
+    value: &T,
+) -> &'static str {
+    values.iter().find(|(_, _, own)| own == value).map_or("", |(word, ..)| word)
 }
 
 /// The package that a command reads: a file, or an address on a web server.
@@ -56,12 +48,12 @@ impl TypedValueParser for PlaceParser {
 ///
 /// # Errors
 /// When it is an address that cannot be read.
-pub(crate) fn place_of(file: PathBuf) -> Result<PackagePlace, Failure> {
+fn place_of(file: PathBuf) -> Result<PackagePlace, Failure> {
     PackagePlace::parse(file.into()).map_err(Failure::unusable)
 }
 
 /// Whether one of several files may be the package: by its name, or as an address, which nothing else has. It may be one that cannot be read.
-pub(crate) fn may_be_package(file: &Path) -> bool {
+fn may_be_package(file: &Path) -> bool {
     is_package_name(file) || !matches!(PackagePlace::parse(file.into()), Ok(PackagePlace::File(_)))
 }
 

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use corniche_presets::{Words, one_of};
+use corniche_window::Inertia;
 
 use super::{
     camera::CameraArgs,
@@ -13,13 +15,10 @@ use super::{
 };
 
 /// How movements of the camera end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Motion {
-    /// They slow down smoothly
-    Soft,
-    /// They end at once
-    Prompt,
-}
+const MOTIONS: Words<Inertia, 2> = [
+    ("soft", "They slow down smoothly", Inertia::On),
+    ("prompt", "They end at once", Inertia::Off),
+];
 
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
@@ -43,8 +42,8 @@ pub(crate) struct ViewArgs {
     #[command(flatten)]
     pub(crate) gpu: GpuArgs,
     /// How movements end
-    #[arg(long, value_enum, default_value_t = Motion::Soft)]
-    pub(crate) motion: Motion,
+    #[arg(long, value_parser = one_of(MOTIONS), default_value = "soft")]
+    pub(crate) motion: Inertia,
     /// Lines to change with the mouse (key L): a GeoJSON file, made if it is not there. They are saved there with Ctrl S and at the end
     /// [default: a new file in --folder]
     #[arg(long, value_name = "GEOJSON")]

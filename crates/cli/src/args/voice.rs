@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use clap::{ArgAction, Args, ValueEnum};
+use clap::{Arg, ArgAction, Args, ValueEnum};
 
 /// How messages are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -14,16 +14,22 @@ pub(crate) enum LogFormat {
     Json,
 }
 
-/// What messages are written on standard error, and how; decided once, from the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+// What messages are written on standard error, and how; decided once, from the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Args)]
+#[command(next_help_heading = "Messages")]
 pub(crate) struct Voice {
-    /// Only errors and warnings.
-    pub(crate) is_quiet: bool,
-    /// How much more is told: 0, 1 (what is done) or more (each step, and what libraries say).
-    pub(crate) verbosity: u8,
-    /// How messages are written.
-    pub(crate) format: LogFormat,
-    /// Progress is records, and with it warnings and how the run ended.
+    /// Print only errors and warnings on standard error; what a command is asked to print stays (of verify: what is broken, and the
+    /// verdict)
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+    /// Tell also what is done and with which settings; -vv: each step, and what libraries say
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    pub(crate) verbose: u8,
+    /// How messages are written on standard error
+    #[arg(long, global = true, value_enum, value_name = "FORMAT", default_value_t)]
+    pub(crate) log_format: LogFormat,
+    // Progress is records, and with it warnings and how the run ended.
+    #[arg(skip)]
     pub(crate) json_progress: bool,
 }
 
@@ -37,8 +43,8 @@ impl Voice {
             match &*word {
                 // Names of files follow.
                 "--" => break,
-                "json" if is_format => voice.format = LogFormat::Json,
-                "--log-format=json" => voice.format = LogFormat::Json,
+                "json" if is_format => voice.log_format = LogFormat::Json,
+                "--log-format=json" => voice.log_format = LogFormat::Json,
                 "--json-progress" => voice.json_progress = true,
                 _ => {}
             }
@@ -48,29 +54,15 @@ impl Voice {
     }
 }
 
-#[derive(Debug, Clone, Copy, Args)]
-#[command(next_help_heading = "Messages")]
-pub(crate) struct VoiceArgs {
-    /// Print only errors and warnings on standard error; what a command is asked to print stays (of verify: what is broken, and the
-    /// verdict)
-    #[arg(short, long, global = true, conflicts_with = "verbose")]
-    pub(crate) quiet: bool,
-    /// Tell also what is done and with which settings; -vv: each step, and what libraries say
-    #[arg(short, long, global = true, action = ArgAction::Count)]
-    pub(crate) verbose: u8,
-    /// How messages are written on standard error
-    #[arg(long, global = true, value_enum, value_name = "FORMAT", default_value_t)]
-    pub(crate) log_format: LogFormat,
-}
+/// The id of `--json-progress`.
+pub(crate) const JSON_PROGRESS: &str = "json_progress";
 
-impl VoiceArgs {
-    /// The voice asked for, of a command that tells progress as records or not.
-    pub(crate) fn voice(self, json_progress: bool) -> Voice {
-        Voice {
-            is_quiet: self.quiet,
-            verbosity: self.verbose,
-            format: self.log_format,
-            json_progress,
-        }
-    }
+/// The option of commands that tell progress.
+pub(crate) fn json_progress() -> Arg {
+    Arg::new(JSON_PROGRESS)
+        .long("json-progress")
+        .help("Print progress, warnings and the end on standard error, as one JSON object per line")
+        .help_heading("Progress")
+        .action(ArgAction::SetTrue)
+        .conflicts_with("quiet")
 }

@@ -1,7 +1,7 @@
 //! Areas in the JSON documents of several commands.
 
 use corniche_areas::AreaClass;
-use corniche_geom::GridFrame;
+use corniche_geom::LatticePoint;
 use corniche_tileset::{AreaLevelRecord, AreaRecord, AreasRecord};
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::documents::record_schemas::AreaLevelDocument;
 
 /// The areas of a package.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct AreasDocument {
     /// Objects of the extract with the tags of an area: those kept and those lost.
@@ -24,7 +24,7 @@ pub(crate) struct AreasDocument {
 }
 
 /// Areas of one class.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct AreaClassDocument {
     /// The class: "water", "forest" and so on.
@@ -36,7 +36,7 @@ struct AreaClassDocument {
 }
 
 /// Objects that became no areas for one reason.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct AreaLossDocument {
     /// Why.
@@ -46,7 +46,7 @@ struct AreaLossDocument {
 }
 
 /// The part of an area that lies in a tile.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct TileAreaDocument {
     /// What it was in OSM: "way" or "relation".
@@ -63,15 +63,10 @@ pub(crate) struct TileAreaDocument {
 }
 
 impl TileAreaDocument {
-    /// `place` makes coordinates from working metres.
-    pub(crate) fn of(
-        area: AreaRecord,
-        frame: &GridFrame,
-        place: &impl Fn([f64; 2]) -> [f64; 2],
-    ) -> Self {
+    /// `place` makes coordinates from points of the lattice.
+    pub(crate) fn of(area: AreaRecord, place: &impl Fn(LatticePoint) -> [f64; 2]) -> Self {
         let (object, id) = area.object.parts();
-        let ring =
-            |ring: Vec<_>| ring.into_iter().map(|point| place(frame.position_m(point))).collect();
+        let ring = |ring: Vec<_>| ring.into_iter().map(place).collect();
         let polygons = area.polygons.into_iter();
         Self {
             object,

@@ -3,12 +3,16 @@
 use corniche_tileset::GrowthRow;
 use serde::Serialize;
 
+#[cfg(test)]
+use crate::documents::info_schema::RowDocument;
+
 /// What laying roads on the terrain costs.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct GrowthDocument {
     /// One for each level and class.
-    pub(crate) rows: Vec<RowDocument>,
+    #[cfg_attr(test, schemars(with = "Vec<RowDocument>"))]
+    pub(crate) rows: Vec<GrowthRow>,
     /// One for each level.
     pub(crate) levels: Vec<LevelGrowthDocument>,
     /// All levels, against one copy of the source.
@@ -17,54 +21,8 @@ pub(crate) struct GrowthDocument {
     pub(crate) paper: f64,
 }
 
-/// What one class costs on one level.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct RowDocument {
-    /// Level.
-    pub(crate) level: u8,
-    /// Functional road class.
-    pub(crate) class: u8,
-    /// Points of the source lines that lie in tiles with ground.
-    pub(crate) source_vertices: u64,
-    /// Points of the level's simplified lines that lie in tiles with ground.
-    pub(crate) simplified_vertices: u64,
-    /// Vertices of the clipped lines.
-    pub(crate) geo_vertices: u64,
-    /// Points of the plan lines for shadow volumes.
-    pub(crate) sv_vertices: u64,
-    /// Bytes of the source lines as plain f64 pairs.
-    pub(crate) source_bytes: u64,
-    /// Bytes of the simplified lines as plain f64 pairs.
-    pub(crate) simplified_bytes: u64,
-    /// Bytes of the clipped lines as plain f64 triples.
-    pub(crate) geo_raw_bytes: u64,
-    /// Bytes of the clipped lines as stored.
-    pub(crate) geo_stored_bytes: u64,
-    /// Bytes of the plan lines as stored.
-    pub(crate) sv_stored_bytes: u64,
-}
-
-impl From<&GrowthRow> for RowDocument {
-    fn from(row: &GrowthRow) -> Self {
-        Self {
-            level: row.level,
-            class: row.class,
-            source_vertices: row.source_vertices,
-            simplified_vertices: row.simplified_vertices,
-            geo_vertices: row.geo_vertices,
-            sv_vertices: row.sv_vertices,
-            source_bytes: row.source_bytes,
-            simplified_bytes: row.simplified_bytes,
-            geo_raw_bytes: row.geo_raw_bytes,
-            geo_stored_bytes: row.geo_stored_bytes,
-            sv_stored_bytes: row.sv_stored_bytes,
-        }
-    }
-}
-
 /// What a level costs, all classes. Ratios are null where there is nothing to divide by.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct LevelGrowthDocument {
     /// Level.
@@ -83,6 +41,15 @@ pub(crate) struct LevelGrowthDocument {
     pub(crate) geo_stored_bytes: u64,
     /// Bytes of the plan lines as stored.
     pub(crate) sv_stored_bytes: u64,
+    /// What it grew by.
+    #[serde(flatten)]
+    pub(crate) factors: Factors,
+}
+
+/// What a row, or a sum of rows, grew by. Ratios are null where there is nothing to divide by.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Factors {
     /// Clipped vertices over simplified ones.
     pub(crate) growth_over_simplified: Option<f64>,
     /// Clipped vertices over the source's.
@@ -98,7 +65,7 @@ pub(crate) struct LevelGrowthDocument {
 }
 
 /// What all levels cost together. Ratios are null where there is nothing to divide by.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct WholeGrowthDocument {
     /// Points of the source lines, once.
@@ -114,7 +81,7 @@ pub(crate) struct WholeGrowthDocument {
 }
 
 /// Several packages beside each other.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ComparisonDocument {
     /// The packages, in the order in which they were named.
@@ -124,7 +91,7 @@ pub(crate) struct ComparisonDocument {
 }
 
 /// One of several packages.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ComparedDocument {
     /// Its path, as it was given.
@@ -138,7 +105,7 @@ pub(crate) struct ComparedDocument {
 }
 
 /// Something in which packages differ.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct DifferenceDocument {
     /// Its name in words, such as "extract", "classes by level", "voids filled" or "polygon".
@@ -148,7 +115,7 @@ pub(crate) struct DifferenceDocument {
 }
 
 /// A value, and who has it.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct DifferentValueDocument {
     /// The packages that have it, by their paths.

@@ -1,7 +1,7 @@
 //! Layers of lines in the JSON documents of several commands.
 
 use corniche_areas::{BoundaryClass, ClassedLayer, LineClass};
-use corniche_geom::GridFrame;
+use corniche_geom::LatticePoint;
 use corniche_tileset::{LineLevelRecord, LineRecord, LinesRecord};
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::documents::record_schemas::LineLevelDocument;
 
 /// A layer of lines of a package.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct LinesDocument {
     /// Ways of the extract that have a class: those kept and those lost. Each counts once, in its most important class.
@@ -24,7 +24,7 @@ pub(crate) struct LinesDocument {
 }
 
 /// Lines of one class.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct LineClassDocument {
     /// The name of the class.
@@ -36,7 +36,7 @@ struct LineClassDocument {
 }
 
 /// Ways that were left out for one reason.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct LineLossDocument {
     /// Why.
@@ -64,7 +64,7 @@ impl LinesDocument {
 }
 
 /// A part of a boundary near a tile.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct TileBoundaryDocument {
     /// OSM's id of the way.
@@ -78,13 +78,12 @@ pub(crate) struct TileBoundaryDocument {
 }
 
 impl TileBoundaryDocument {
-    /// `place` makes coordinates from working metres.
+    /// `place` makes coordinates from points of the lattice.
     pub(crate) fn of(
         LineRecord { way_id, class, points }: LineRecord,
-        frame: &GridFrame,
-        place: &impl Fn([f64; 2]) -> [f64; 2],
+        place: impl Fn(LatticePoint) -> [f64; 2],
     ) -> Self {
-        let line = points.into_iter().map(|point| place(frame.position_m(point))).collect();
+        let line = points.into_iter().map(place).collect();
         let admin_level =
             BoundaryClass::from_number(class.number()).and_then(BoundaryClass::admin_level);
         Self { way_id, class: class.name(), admin_level, line }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::documents::record_schemas::EstimateDocument;
 
 /// What a build will take.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct PlanDocument {
     /// The plan's hash: equal plans make equal packages.

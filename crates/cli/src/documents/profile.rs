@@ -4,7 +4,7 @@ use corniche_export::{Profile, ProfileGrades, ProfilePoint};
 use serde::Serialize;
 
 /// Heights and grades along ways or lines.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ProfileDocument<'a> {
     /// What it is called: roads by their names, or a file.
@@ -38,7 +38,7 @@ pub(crate) struct ProfileDocument<'a> {
 }
 
 /// Ups and downs.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct GradesDocument {
     /// Metres upwards, all of them together.
@@ -50,7 +50,7 @@ struct GradesDocument {
 }
 
 /// What a stretch follows.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct LegDocument<'a> {
     /// The way; with `--line` the number of the line in the file, from 1.
@@ -68,7 +68,7 @@ struct LegDocument<'a> {
 }
 
 /// A part without gaps.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct PartDocument {
     /// Its vertices.
@@ -76,7 +76,7 @@ struct PartDocument {
 }
 
 /// A vertex.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct PointDocument {
     /// The way of the vertex; where two meet, the first. With `--line` the number of the line.

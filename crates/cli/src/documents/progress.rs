@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 /// A line on standard error.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub(crate) enum ProgressRecord<'a> {
@@ -31,7 +31,7 @@ pub(crate) enum ProgressRecord<'a> {
 }
 
 /// How far a stage is.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct StageRecord<'a> {
     /// Its name, which does not change.
@@ -63,7 +63,7 @@ pub(crate) struct StageRecord<'a> {
 }
 
 /// What a run took. What the system does not tell is null.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct CostRecord {
     /// By the clock.
@@ -81,7 +81,7 @@ pub(crate) struct CostRecord {
 }
 
 /// What a stage took.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct StageCostRecord<'a> {
     /// Its name, which does not change.
@@ -100,7 +100,7 @@ pub(crate) struct StageCostRecord<'a> {
 }
 
 /// How a run ended.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct EndRecord<'a> {
     /// "done", "failed", "unusable", "exists" or "interrupted".

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::{
     growth::{ComparisonDocument, GrowthDocument},
-    info::InfoDocument,
+    info_schema::InfoDocument,
     plan::PlanDocument,
     profile::ProfileDocument,
     progress::ProgressRecord,
@@ -108,10 +108,10 @@ fn the_document_has_all_fields_of_the_manifest() {
         ways: 2,
         length_um: 7,
     }];
-    let document = super::info::ManifestDocument::from(&manifest);
+    let document = super::info::InfoDocument { manifest: &manifest, tiles: Vec::new() };
     check(
         &serde_json::to_value(&manifest).unwrap(),
-        &serde_json::to_value(document).unwrap(),
+        &serde_json::to_value(document).unwrap()["manifest"],
         "manifest",
     );
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::documents::record_schemas::LineLevelDocument;
 
 /// The bridges and tunnels of a package. Each is all ways of its kind that are connected; heights are estimates.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct SpansDocument {
     /// How many bridges.
@@ -28,7 +28,7 @@ pub(crate) struct SpansDocument {
 }
 
 /// A reason to look at bridges or tunnels.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct ReasonDocument {
     /// Its name.
@@ -53,7 +53,7 @@ impl From<SpansRecord> for SpansDocument {
 }
 
 /// A stretch of a bridge that is above the ground of the tile's level, or of a tunnel that is below.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct TileSpanDocument {
     /// OSM's id of the way.

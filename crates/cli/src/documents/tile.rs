@@ -1,25 +1,27 @@
 //! The JSON document of `corniche tile`.
 
+use corniche_roads::Oneway;
 use corniche_tileset::RoadRecord;
 use serde::{Serialize, Serializer};
 
 use super::{areas::TileAreaDocument, lines::TileBoundaryDocument, spans::TileSpanDocument};
 
 /// A list whose items are made one after the other while it is written: together they would take several times the memory of the tile.
-pub(crate) struct Written<'a, Item>(Box<dyn Fn() -> Items<'a, Item> + 'a>);
+pub(crate) struct Written<'a, Item> {
+    count: usize,
+    item: Box<dyn Fn(usize) -> Item + 'a>,
+}
 
-type Items<'a, Item> = Box<dyn Iterator<Item = Item> + 'a>;
-
-impl<'a, Item: 'a> Written<'a, Item> {
+impl<'a, Item> Written<'a, Item> {
     /// Each of these as an item.
-    pub(crate) fn of<T>(all: &'a [T], item: impl Fn(&'a T) -> Item + Copy + 'a) -> Self {
-        Self(Box::new(move || Box::new(all.iter().map(item))))
+    pub(crate) fn of<T>(all: &'a [T], item: impl Fn(&'a T) -> Item + 'a) -> Self {
+        Self { count: all.len(), item: Box::new(move |index| item(&all[index])) }
     }
 }
 
 impl<Item: Serialize> Serialize for Written<'_, Item> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq((self.0)())
+        serializer.collect_seq((0..self.count).map(&self.item))
     }
 }
 
@@ -69,7 +71,7 @@ pub(crate) struct TileDocument<'a> {
 }
 
 /// Triangles of the ground.
-#[derive(Debug, Default, Serialize)]
+#[derive(Default, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct TinDocument {
     /// x, y and height in metres of each vertex.
@@ -81,7 +83,7 @@ pub(crate) struct TinDocument {
 }
 
 /// A piece of a road on the triangles.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct GeoRoadDocument {
     /// OSM's id of the way.
@@ -95,7 +97,7 @@ pub(crate) struct GeoRoadDocument {
 }
 
 /// A piece of a road in plan.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct SvRoadDocument {
     /// OSM's id of the way.
@@ -111,43 +113,42 @@ pub(crate) struct SvRoadDocument {
 }
 
 /// What is known of a way.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct WayDocument {
     /// OSM's id of the way.
-    pub(crate) way_id: i64,
+    way_id: i64,
     /// How it is built: `ordinary`, `dual_carriageway`, `link` or `roundabout`.
-    pub(crate) form: &'static str,
+    form: &'static str,
     /// What carries it: "ground", "bridge" or "tunnel".
-    pub(crate) structure: &'static str,
+    structure: &'static str,
     /// OSM's `layer`.
-    pub(crate) layer: i8,
+    layer: i8,
     /// Permitted direction along the way: "no" (both), "forward" or "backward".
-    pub(crate) oneway: &'static str,
+    oneway: &'static str,
     /// `name`; null without.
-    pub(crate) name: Option<String>,
+    name: Option<String>,
     /// `ref`; null without.
     #[serde(rename = "ref")]
-    pub(crate) reference: Option<String>,
+    reference: Option<String>,
     /// `surface`; null without.
-    pub(crate) surface: Option<String>,
+    surface: Option<String>,
     /// `highway`; null in packages that do not hold it.
-    pub(crate) highway: Option<String>,
+    highway: Option<String>,
     /// `lanes`, in both directions together; null without.
-    pub(crate) lanes: Option<u8>,
+    lanes: Option<u8>,
     /// `width`, metres; null without.
-    pub(crate) width_m: Option<f64>,
+    width_m: Option<f64>,
     /// `maxspeed`: a number is km/h, "30 mph" miles an hour, else as tagged; null without.
-    pub(crate) maxspeed: Option<String>,
+    maxspeed: Option<String>,
     /// `sac_scale`; null without.
-    pub(crate) sac_scale: Option<String>,
+    sac_scale: Option<String>,
     /// `tracktype`; null without.
-    pub(crate) tracktype: Option<String>,
+    tracktype: Option<String>,
 }
 
 impl From<&RoadRecord> for WayDocument {
     fn from(record: &RoadRecord) -> Self {
-        use corniche_roads::Oneway;
         let attributes = &record.attributes;
         let text = |text: &str| (!text.is_empty()).then(|| text.to_owned());
         Self {

@@ -8,44 +8,44 @@ use serde::Serialize;
 use crate::documents::record_schemas::{ErrorDocument, GapDocument, SamplesDocument};
 
 /// Whether a package keeps its promises.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct VerifyDocument {
     /// No check is broken.
-    pub(crate) holds: bool,
+    holds: bool,
     /// Tiles looked at.
-    pub(crate) tiles: u64,
+    tiles: u64,
     /// Borders between tiles of one level that were compared.
-    pub(crate) borders: u64,
+    borders: u64,
     /// The checks.
-    pub(crate) checks: Vec<CheckDocument>,
+    checks: Vec<CheckDocument>,
     /// Gaps between GEO roads and TINs, per level.
     #[cfg_attr(test, schemars(with = "Vec<GapDocument>"))]
-    pub(crate) gaps: Vec<GapFigures>,
+    gaps: Vec<GapFigures>,
     /// With `--dem`: geometric errors, per level.
     #[cfg_attr(test, schemars(with = "Vec<ErrorDocument>"))]
-    pub(crate) errors: Vec<ErrorFigures>,
+    errors: Vec<ErrorFigures>,
     /// With `--dem`: how far the finest level is from the DEM's own samples.
     #[cfg_attr(test, schemars(with = "Option<SamplesDocument>"))]
-    pub(crate) samples: Option<SampleErrorRecord>,
+    samples: Option<SampleErrorRecord>,
 }
 
 /// A check.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct CheckDocument {
+struct CheckDocument {
     /// Its name, which does not change.
-    pub(crate) id: &'static str,
+    id: &'static str,
     /// What it checks.
-    pub(crate) promise: &'static str,
+    promise: &'static str,
     /// Whether it holds; null when there was nothing to check.
-    pub(crate) holds: Option<bool>,
+    holds: Option<bool>,
     /// How many things were looked at.
-    pub(crate) checked: u64,
+    checked: u64,
     /// How many of them break it.
-    pub(crate) broken: u64,
+    broken: u64,
     /// The first few of those, in words.
-    pub(crate) examples: Vec<String>,
+    examples: Vec<String>,
 }
 
 impl From<&VerifyReport> for VerifyDocument {

@@ -5,7 +5,7 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::Manifest;
 
 use super::{
-    lines::{LinesArgs, LinesExport},
+    lines::LinesExport,
     vector_files::{MEMORY_BYTES, facts, fill, spans_text},
 };
 use crate::{
@@ -14,21 +14,13 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages, recorded,
-    table::{Digits, bytes, length, up_to},
+    table::{bytes, length, noted, up_to},
 };
 
 pub(crate) fn run(args: &ExportEdgesArgs) -> Result<ExitCode, Failure> {
     let usage = "corniche export edges PACKAGE -o FILE --dem FILE... --osm FILE...";
-    let lines = LinesArgs {
-        from: &args.from,
-        extract: &args.extract,
-        vector: &args.vector,
-        cpu: &args.cpu,
-        level: None,
-        usage,
-    };
     let LinesExport { format, coordinates, package, output, elevation, network } =
-        LinesExport::begin(&lines, "edges")?;
+        LinesExport::begin(&args.vector, None, &args.cpu, ("edges", usage))?;
     // The package alone may have been named after these options.
     let (Some(elevation), Some(network)) = (elevation, network) else {
         return Err(Failure::unusable(format!(
@@ -59,15 +51,14 @@ fn to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::of_notes().count(number);
     let some = |number, what: &str| match number {
         0 => String::new(),
-        _ => format!("; {} {what}", count(number)),
+        _ => format!("; {} {what}", noted(number)),
     };
     format!(
         "{}: {} edges, {}, {}{}{}\n{}\nheights are within {} m of the DEM, over whole lines",
         in_line(&args.vector.file.output.to_string_lossy()),
-        count(summary.edges),
+        noted(summary.edges),
         length((summary.length_m * 1e6).round() as u64),
         bytes(size),
         some(summary.without_ground, "left out, without ground"),

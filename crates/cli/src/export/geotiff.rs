@@ -5,26 +5,22 @@ use std::path::Path;
 use corniche_export::{GeoTiffRequest, GeoTiffSummary, export_geotiff};
 use corniche_tileset::{Manifest, SampleErrorRecord};
 
-use super::vector_files::fill;
+use super::vector_files::{fill, tell};
 use crate::{
     args::ExportGeoTiffArgs,
-    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages,
+    names::MAP,
     output::{existing_of, named::NamedOutput},
     packages, recorded,
     settings::threads,
-    table::{Digits, bytes},
+    table::{bytes, noted},
 };
 
-/// Endings of names that programs take for a `GeoTIFF`.
-const ENDINGS: [&str; 2] = ["tif", "tiff"];
-
 pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
-    let ending = args.file.output.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    if !ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str())) {
+    if !MAP.is_of(&args.file.output) {
         return Err(Failure::unusable(format!(
             "{} is a raster; give it the ending .tif",
             args.file.output.display()
@@ -55,38 +51,30 @@ pub(crate) fn run(args: &ExportGeoTiffArgs) -> Result<ExitCode, Failure> {
             summary.heights
         ));
     }
-    messages::summary(&to_text(args, &summary, package.manifest(), size));
+    tell(&args.file.output, &to_text(&summary, package.manifest(), size), package.manifest());
     Ok(ExitCode::Done)
 }
 
-fn to_text(
-    args: &ExportGeoTiffArgs,
-    summary: &GeoTiffSummary,
-    manifest: &Manifest,
-    size: u64,
-) -> String {
-    let count = |number| Digits::of_notes().count(number);
+fn to_text(summary: &GeoTiffSummary, manifest: &Manifest, size: u64) -> String {
     let error = summary.sample_error.map_or_else(String::new, |error| {
         let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = error;
         let points = if manifest.nodes_are_samples { "samples" } else { "nodes, which lie between samples" };
         format!(
             "\nTIN minus DEM: max {max_m:.3} m, RMS {rms_m:.3} m, p99 {p99_m:.3} m at {} {points}; {} have no ground",
-            count(on_tin),
-            count(off_tin)
+            noted(on_tin),
+            noted(off_tin)
         )
     });
     format!(
-        "{}: level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}{}",
-        in_line(&args.file.output.to_string_lossy()),
+        "level {}, {} × {} nodes, {} with ground, {}, {}\nstored error: {:.3} m at most\ncoordinates: {}\nheights: {}{error}",
         summary.level,
-        count(summary.columns),
-        count(summary.rows),
-        count(summary.covered),
+        noted(summary.columns),
+        noted(summary.rows),
+        noted(summary.covered),
         summary.pixels,
         bytes(size),
         summary.error_bound_m,
         in_line(&manifest.crs),
         in_line(&summary.heights),
-        credits_line(manifest),
     )
 }

@@ -9,22 +9,11 @@ use corniche_verify::RecordedElevation;
 
 use super::vector_files::{coordinates, format};
 use crate::{
-    args::{ExtractArgs, RecordedArgs, ThreadsArg, VectorArgs},
+    args::{ThreadsArg, VectorArgs},
     failure::Failure,
     output::{existing_of, named::NamedOutput},
     packages, recorded,
 };
-
-/// What a command line of an export of lines says.
-pub(crate) struct LinesArgs<'a> {
-    pub(crate) from: &'a RecordedArgs,
-    pub(crate) extract: &'a ExtractArgs,
-    pub(crate) vector: &'a VectorArgs,
-    pub(crate) cpu: &'a ThreadsArg,
-    pub(crate) level: Option<u8>,
-    /// How to name the package.
-    pub(crate) usage: &'a str,
-}
 
 /// An export of lines whose inputs are open.
 pub(crate) struct LinesExport {
@@ -37,14 +26,19 @@ pub(crate) struct LinesExport {
 }
 
 impl LinesExport {
-    /// Opens the inputs and begins the file, whose layer is called `layer`. An unusable place, and what cannot be met, is reported before any work is done.
-    pub(crate) fn begin(args: &LinesArgs<'_>, layer: &str) -> Result<Self, Failure> {
-        let LinesArgs { from, extract, vector, cpu, level, usage } = args;
+    /// Opens the inputs and begins the file, whose layer is called `layer`; `usage` shows how to name the package. An unusable place, and what cannot be met, is reported before any work is done.
+    pub(crate) fn begin(
+        vector: &VectorArgs,
+        level: Option<u8>,
+        cpu: &ThreadsArg,
+        (layer, usage): (&str, &str),
+    ) -> Result<Self, Failure> {
+        let VectorArgs { from, extract, .. } = vector;
         let format = format(vector.format, &vector.file.output)?;
         let coordinates = coordinates(vector.crs, vector.heights.is_some(), format)?;
         let (place, [dem, osm]) = from.files(&extract.osm, usage)?;
         let package = packages::open_with_datum(&place, &vector.datum)?;
-        check_lines_request(&package, *level, (format, coordinates))?;
+        check_lines_request(&package, level, (format, coordinates))?;
         let files = dem.iter().chain(&osm).map(PathBuf::as_path);
         let inputs: Vec<&Path> = [place.name()].into_iter().chain(files).collect();
         let name = format!("{layer}.{}", format.ending());

@@ -8,18 +8,18 @@ use std::{
 use corniche_export::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, export_mesh};
 use corniche_tileset::Manifest;
 
+use super::vector_files::tell;
 use crate::{
     args::ExportMeshArgs,
-    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    messages, names,
+    names,
     output::{Existing, Output, existing_of, named::NamedOutput},
     packages,
     progress::Progress,
     styles,
-    table::{Digits, bytes},
+    table::{bytes, noted},
 };
 
 pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
@@ -54,20 +54,19 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
     let output =
         NamedOutput::create(&args.file.output, existing, name, &[args.from.package.name()])?;
     let materials = materials.map(|path| Materials::begin(path, existing, args)).transpose()?;
-    let progress = Progress::new();
-    let exported = export_mesh(&package, &request, &output.path(), &progress);
-    progress.finish();
+    let exported =
+        Progress::of(|progress| export_mesh(&package, &request, &output.path(), progress));
     let summary = exported.map_err(|error| Failure::from(error).about_target(&args.file.output))?;
     let placed = materials
         .map(|materials| materials.place(&request.materials(package.manifest())))
         .transpose()?;
     let size = output.place().inspect_err(|_| {
         // Materials without a model are of no use, but those that were there before belong to another one.
-        if let Some(Placed { path, is_new: true }) = &placed {
-            let _ = fs::remove_file(path);
+        if let Some(Some(new)) = &placed {
+            let _ = fs::remove_file(new);
         }
     })?;
-    messages::summary(&to_text(args, &summary, package.manifest(), size));
+    tell(&args.file.output, &to_text(args, &summary, package.manifest(), size), package.manifest());
     Ok(ExitCode::Done)
 }
 
@@ -75,13 +74,6 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
 struct Materials {
     path: PathBuf,
     output: Output,
-}
-
-/// A file of materials in its place.
-struct Placed {
-    path: PathBuf,
-    /// Nothing was there before.
-    is_new: bool,
 }
 
 impl Materials {
@@ -92,12 +84,12 @@ impl Materials {
         Ok(Self { path, output })
     }
 
-    /// Writes it and puts it in its place: before the model, which names it.
-    fn place(self, content: &str) -> Result<Placed, Failure> {
+    /// Writes it and puts it in its place: before the model, which names it. Gives the place if nothing was there before.
+    fn place(self, content: &str) -> Result<Option<PathBuf>, Failure> {
         let Self { path, output } = self;
         let is_new = path.symlink_metadata().is_err();
         output.write_whole(content.as_bytes())?;
-        Ok(Placed { path, is_new })
+        Ok(is_new.then_some(path))
     }
 }
 
@@ -106,21 +98,18 @@ fn file_name(path: &Path) -> String {
 }
 
 fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, size: u64) -> String {
-    let count = |number| Digits::of_notes().count(number);
     let [x, y] = summary.origin;
     let roads = match args.roads {
-        ModelRoads::Surfaces => format!("{} of them of roads", count(summary.road_triangles)),
-        ModelRoads::Lines | ModelRoads::None => format!("{} lines of roads", count(summary.lines)),
+        ModelRoads::Surfaces => format!("{} of them of roads", noted(summary.road_triangles)),
+        ModelRoads::Lines | ModelRoads::None => format!("{} lines of roads", noted(summary.lines)),
     };
     format!(
-        "{}: level {}, {} tiles, {} triangles, {roads}, {}\norigin: {x}, {y} in {}\nheights: as in the package, metres (datum: {}){}",
-        in_line(&args.file.output.to_string_lossy()),
+        "level {}, {} tiles, {} triangles, {roads}, {}\norigin: {x}, {y} in {}\nheights: as in the package, metres (datum: {})",
         summary.level,
-        count(summary.tiles),
-        count(summary.triangles),
+        noted(summary.tiles),
+        noted(summary.triangles),
         bytes(size),
         in_line(&manifest.crs),
         in_line(&manifest.vertical.datum),
-        credits_line(manifest),
     )
 }

@@ -6,20 +6,18 @@ use corniche_export::{
     Coordinates, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest, QuantizedMeshSummary,
     export_quantized_mesh,
 };
-use corniche_tileset::Manifest;
+use corniche_spec::machine::FileSystem;
 
+use super::vector_files::{fill_folder, tell};
 use crate::{
     args::ExportQuantizedMeshArgs,
-    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    messages,
-    output::{existing_of, folder::FolderOutput},
-    packages,
+    messages, packages,
     progress::Progress,
     settings,
-    table::{Digits, bytes},
+    table::{bytes, noted},
 };
 
 /// Half of the block that most file systems have.
@@ -32,29 +30,21 @@ pub(crate) fn run(args: &ExportQuantizedMeshArgs) -> Result<ExitCode, Failure> {
         max_level: args.max_level,
         max_files: args.max_files,
         bounds: args.within.bounds,
-        coordinates: match args.heights {
-            None => Coordinates::Wgs84,
-            Some(_) => Coordinates::Wgs84WithPackageHeights,
-        },
+        coordinates: args.heights.unwrap_or(Coordinates::Wgs84),
         availability: args.availability,
         gzip: args.compress,
         threads: settings::threads(args.cpu.threads),
     };
-    let existing = existing_of(args.folder.overwrite);
-    let output = FolderOutput::create(&args.folder.output, existing, &[args.from.package.name()])?;
-    let plan = QuantizedMeshPlan::new(&package, &request)
-        .map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
-    messages::note(&plan_text(&plan));
-    refuse_full_disk(&plan, output.path())?;
-    let progress = Progress::new();
-    let effort = plan.levels.iter().rev().map(|level| (level.tiles, level.effort)).collect();
-    progress.expect_efforts(effort);
-    let exported = export_quantized_mesh(&package, (&request, plan), output.path(), &progress);
-    progress.finish();
-    let summary =
-        exported.map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
-    let size = output.place("quantized-mesh")?;
-    messages::summary(&to_text(args, &summary, package.manifest(), size));
+    let export = |folder: &Path, progress: &Progress| -> Result<_, Failure> {
+        let plan = QuantizedMeshPlan::new(&package, &request)?;
+        messages::note(&plan_text(&plan));
+        refuse_full_disk(&plan, folder)?;
+        let effort = plan.levels.iter().rev().map(|level| (level.tiles, level.effort));
+        progress.expect_efforts(effort.collect());
+        Ok(export_quantized_mesh(&package, (&request, plan), folder, progress)?)
+    };
+    let (summary, size) = fill_folder(&args.folder, &args.from, "quantized-mesh", export)?;
+    tell(&args.folder.output, &to_text(&summary, size), package.manifest());
     Ok(ExitCode::Done)
 }
 
@@ -63,7 +53,7 @@ fn plan_text(plan: &QuantizedMeshPlan) -> String {
     format!(
         "terrain      levels 0 to {}: at most {} files, about {} (an estimate from some tiles); --max-level chooses another finest level",
         plan.finest(),
-        Digits::of_notes().count(plan.files()),
+        noted(plan.files()),
         bytes(plan.bytes),
     )
 }
@@ -72,24 +62,20 @@ fn plan_text(plan: &QuantizedMeshPlan) -> String {
 fn refuse_full_disk(plan: &QuantizedMeshPlan, folder: &Path) -> Result<(), Failure> {
     let needed = plan.bytes.saturating_add(plan.files() * HALF_BLOCK_BYTES);
     // Where nothing is known of the file system, writing tells.
-    match corniche_spec::machine::free_bytes(folder) {
-        Ok(free) if free < needed => Err(Failure::unusable(format!(
-            "about {} are needed for {} files, and {} are free there; choose a coarser level with --max-level, or another folder",
-            bytes(needed),
-            Digits::of_notes().count(plan.files()),
-            bytes(free),
-        ))),
+    match FileSystem::of(folder) {
+        Ok(FileSystem { free_bytes: free, .. }) if free < needed => {
+            Err(Failure::unusable(format!(
+                "about {} are needed for {} files, and {} are free there; choose a coarser level with --max-level, or another folder",
+                bytes(needed),
+                noted(plan.files()),
+                bytes(free),
+            )))
+        }
         _ => Ok(()),
     }
 }
 
-fn to_text(
-    args: &ExportQuantizedMeshArgs,
-    summary: &QuantizedMeshSummary,
-    manifest: &Manifest,
-    size: u64,
-) -> String {
-    let count = |number| Digits::of_notes().count(number);
+fn to_text(summary: &QuantizedMeshSummary, size: u64) -> String {
     let level = |level: &QuantizedMeshLevel| {
         let deviation = if level.places == 0 {
             "not measured: no place with ground is on its raster".to_owned()
@@ -98,14 +84,14 @@ fn to_text(
                 "{:.3} m from the package at most ({:.3} m rms, {} places)",
                 level.deviation_m,
                 level.deviation_rms_m,
-                count(level.places),
+                noted(level.places),
             )
         };
         format!(
             "  level {}: {} tiles, {} triangles, {}, sampled {} × {}; assumed error {:.3} m, {deviation}\n",
             level.level,
-            count(level.tiles),
-            count(level.triangles),
+            noted(level.tiles),
+            noted(level.triangles),
             bytes(level.bytes),
             level.cells,
             level.cells,
@@ -114,12 +100,10 @@ fn to_text(
     };
     let tiles: u64 = summary.levels.iter().map(|level| level.tiles).sum();
     format!(
-        "{}: {} tiles, {}\n{}heights: {}{}",
-        in_line(&args.folder.output.to_string_lossy()),
-        count(tiles),
+        "{} tiles, {}\n{}heights: {}",
+        noted(tiles),
         bytes(size),
         summary.levels.iter().map(level).collect::<String>(),
         in_line(&summary.heights),
-        credits_line(manifest),
     )
 }

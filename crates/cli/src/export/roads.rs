@@ -7,7 +7,7 @@ use corniche_export::{
 use corniche_tileset::Manifest;
 
 use super::{
-    lines::{LinesArgs, LinesExport},
+    lines::LinesExport,
     vector_files::{MEMORY_BYTES, facts, fill, spans_text},
 };
 use crate::{
@@ -16,20 +16,13 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages, recorded,
-    table::{Digits, bytes, length, up_to},
+    table::{bytes, length, noted, up_to},
 };
 
 pub(crate) fn run(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
-    let lines = LinesArgs {
-        from: &args.from,
-        extract: &args.extract,
-        vector: &args.vector,
-        cpu: &args.cpu,
-        level: args.at.level,
-        usage: "corniche export roads PACKAGE -o FILE --dem FILE...",
-    };
+    let usage = "corniche export roads PACKAGE -o FILE --dem FILE...";
     let LinesExport { format, coordinates, package, output, elevation, network } =
-        LinesExport::begin(&lines, "roads")?;
+        LinesExport::begin(&args.vector, args.at.level, &args.cpu, ("roads", usage))?;
     let request = FeatureRequest {
         format,
         level: args.at.level,
@@ -64,11 +57,10 @@ fn to_text(
     manifest: &Manifest,
     size: u64,
 ) -> String {
-    let count = |number| Digits::of_notes().count(number);
     let what = if args.pieces {
-        format!("{} pieces of {} ways", count(summary.features), count(summary.ways))
+        format!("{} pieces of {} ways", noted(summary.features), noted(summary.ways))
     } else {
-        format!("{} ways", count(summary.features))
+        format!("{} ways", noted(summary.features))
     };
     let tolerance = match (summary.ground_tolerance_m, summary.height_tolerance_m) {
         (Some(ground_m), within_m) => format!(
@@ -91,7 +83,7 @@ fn to_text(
         in_line(&args.vector.file.output.to_string_lossy()),
         summary.level,
         length((summary.length_2d_m * 1e6).round() as u64),
-        count(summary.vertices),
+        noted(summary.vertices),
         bytes(size),
         facts(coordinates, &summary.heights, manifest),
     ) + &summary.spans.as_ref().map(spans_text).unwrap_or_default()

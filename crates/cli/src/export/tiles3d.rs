@@ -1,20 +1,19 @@
 //! `corniche export 3dtiles`: a package as 3D Tiles.
 
-use corniche_export::{Coordinates, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
-use corniche_tileset::Manifest;
+use std::path::Path;
 
+use corniche_export::{Coordinates, Tiles3dLevel, Tiles3dRequest, Tiles3dSummary, export_tiles3d};
+
+use super::vector_files::{fill_folder, tell};
 use crate::{
     args::ExportTiles3dArgs,
-    credits::credits_line,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    messages,
-    output::{existing_of, folder::FolderOutput},
     packages,
     progress::Progress,
     settings, styles,
-    table::{Digits, bytes},
+    table::{bytes, noted},
 };
 
 pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
@@ -29,39 +28,25 @@ pub(crate) fn run(args: &ExportTiles3dArgs) -> Result<ExitCode, Failure> {
         relief: args.relief,
         skirts: args.skirts,
         compress: args.compress,
-        coordinates: match args.heights {
-            None => Coordinates::Wgs84,
-            Some(_) => Coordinates::Wgs84WithPackageHeights,
-        },
+        coordinates: args.heights.unwrap_or(Coordinates::Wgs84),
         threads: settings::threads(args.cpu.threads),
     };
-    let existing = existing_of(args.folder.overwrite);
-    let output = FolderOutput::create(&args.folder.output, existing, &[args.from.package.name()])?;
-    let progress = Progress::new();
-    let exported = export_tiles3d(&package, &request, output.path(), &progress);
-    progress.finish();
-    let summary =
-        exported.map_err(|error| Failure::from(error).about_target(&args.folder.output))?;
-    let size = output.place("3D Tiles")?;
-    messages::summary(&to_text(args, &summary, package.manifest(), size));
+    let export =
+        |folder: &Path, progress: &Progress| export_tiles3d(&package, &request, folder, progress);
+    let (summary, size) = fill_folder(&args.folder, &args.from, "3D Tiles", export)?;
+    tell(&args.folder.output, &to_text(&summary, size), package.manifest());
     Ok(ExitCode::Done)
 }
 
-fn to_text(
-    args: &ExportTiles3dArgs,
-    summary: &Tiles3dSummary,
-    manifest: &Manifest,
-    size: u64,
-) -> String {
-    let count = |number| Digits::of_notes().count(number);
+fn to_text(summary: &Tiles3dSummary, size: u64) -> String {
     let level = |level: &Tiles3dLevel| {
         format!(
             "  level {}: {} tiles, {} triangles ({} in the package), {} of roads, {}, error {:.3} m, {:.1} ms of cutting a tile\n",
             level.level,
-            count(level.tiles),
-            count(level.triangles),
-            count(level.package_triangles),
-            count(level.road_triangles),
+            noted(level.tiles),
+            noted(level.triangles),
+            noted(level.package_triangles),
+            noted(level.road_triangles),
             bytes(level.bytes),
             level.error_m,
             level.cut_s * 1e3 / level.tiles.max(1) as f64,
@@ -69,13 +54,11 @@ fn to_text(
     };
     let total = |of: fn(&Tiles3dLevel) -> u64| summary.levels.iter().map(of).sum::<u64>();
     format!(
-        "{}: {} tiles, {}, {} tileset documents\n{}heights: {}{}",
-        in_line(&args.folder.output.to_string_lossy()),
-        count(total(|level| level.tiles)),
+        "{} tiles, {}, {} tileset documents\n{}heights: {}",
+        noted(total(|level| level.tiles)),
         bytes(size),
-        count(summary.documents),
+        noted(summary.documents),
         summary.levels.iter().map(level).collect::<String>(),
         in_line(&summary.heights),
-        credits_line(manifest),
     )
 }

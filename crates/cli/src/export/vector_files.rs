@@ -7,14 +7,14 @@ use corniche_tileset::Manifest;
 use corniche_verify::RecordedElevation;
 
 use crate::{
-    args::{ExportCrs, FileArgs},
+    args::{FileArgs, FolderArgs, PackageArg},
     credits::credits_line,
     escaped::in_line,
     failure::Failure,
-    names,
-    output::named::NamedOutput,
+    messages, names,
+    output::{existing_of, folder::FolderOutput, named::NamedOutput},
     progress::Progress,
-    table::Digits,
+    table::noted,
 };
 
 /// Memory for sorting pieces by their objects.
@@ -27,13 +27,31 @@ pub(crate) fn fill<T, E: Into<Failure>>(
     elevation: Option<&RecordedElevation>,
     export: impl FnOnce(&Path, &Progress) -> Result<T, E>,
 ) -> Result<(T, u64), Failure> {
-    let progress = Progress::new();
-    let exported = export(&output.path(), &progress);
-    progress.finish();
+    let exported = Progress::of(|progress| export(&output.path(), progress));
     // A file that changed may be the cause of any other error.
     elevation.map_or(Ok(()), RecordedElevation::check_unchanged)?;
     let summary = exported.map_err(|error| error.into().about_target(&file.output))?;
     Ok((summary, output.place()?))
+}
+
+/// Tells what was written, and what is to be shown with it.
+pub(crate) fn tell(output: &Path, what: &str, manifest: &Manifest) {
+    let name = output.to_string_lossy();
+    messages::summary(&format!("{}: {what}{}", in_line(&name), credits_line(manifest)));
+}
+
+/// Writes a folder, which is none with a file of the package, and puts it into its place. Gives its size, too.
+pub(crate) fn fill_folder<T, E: Into<Failure>>(
+    args: &FolderArgs,
+    package: &PackageArg,
+    what: &str,
+    export: impl FnOnce(&Path, &Progress) -> Result<T, E>,
+) -> Result<(T, u64), Failure> {
+    let used = [package.package.name()];
+    let output = FolderOutput::create(&args.output, existing_of(args.overwrite), &used)?;
+    let exported = Progress::of(|progress| export(output.path(), progress));
+    let summary = exported.map_err(|error| error.into().about_target(&args.output))?;
+    Ok((summary, output.place(what)?))
 }
 
 /// The format that is named, or that of the ending.
@@ -46,23 +64,21 @@ pub(crate) fn format(named: Option<VectorFormat>, output: &Path) -> Result<Vecto
 
 /// The coordinates that are asked for; of GeoJSON degrees, where nothing is. `keeps_heights` says that heights are to stay as they are.
 pub(crate) fn coordinates(
-    crs: Option<ExportCrs>,
+    crs: Option<Coordinates>,
     keeps_heights: bool,
     format: VectorFormat,
 ) -> Result<Coordinates, Failure> {
-    let unasked =
-        if format == VectorFormat::GeoJson { ExportCrs::Degrees } else { ExportCrs::Package };
-    Ok(match crs.unwrap_or(unasked) {
-        ExportCrs::Package if keeps_heights => {
-            return Err(Failure::unusable(
-                "--heights as-is goes with --crs EPSG:4979; without it heights are the package's in any case",
-            ));
-        }
-        ExportCrs::Package => Coordinates::Package,
-        ExportCrs::Wgs84 if !keeps_heights => Coordinates::Wgs84,
-        ExportCrs::Wgs84 | ExportCrs::Degrees => Coordinates::Wgs84WithPackageHeights,
-        ExportCrs::Epsg(code) => Coordinates::Epsg(code),
-    })
+    let unasked = match format {
+        VectorFormat::GeoJson => Coordinates::Wgs84WithPackageHeights,
+        _ => Coordinates::Package,
+    };
+    match crs.unwrap_or(unasked) {
+        Coordinates::Package if keeps_heights => Err(Failure::unusable(
+            "--heights as-is goes with --crs EPSG:4979; without it heights are the package's in any case",
+        )),
+        Coordinates::Wgs84 if keeps_heights => Ok(Coordinates::Wgs84WithPackageHeights),
+        asked => Ok(asked),
+    }
 }
 
 /// Coordinates in words.
@@ -116,9 +132,8 @@ pub(crate) fn spans_text(facts: &SpanFacts) -> String {
     if facts.spans == 0 {
         return String::new();
     }
-    let count = |number| Digits::of_notes().count(number);
     let reasons =
-        facts.reasons.iter().map(|(reason, number)| format!(", {reason} {}", count(*number)));
+        facts.reasons.iter().map(|(reason, number)| format!(", {reason} {}", noted(*number)));
     let nodes: Vec<String> =
         facts.ground_nodes.iter().take(MOST_NODES).map(i64::to_string).collect();
     let more = if facts.ground_nodes.len() > MOST_NODES { " …" } else { "" };
@@ -129,8 +144,8 @@ pub(crate) fn spans_text(facts: &SpanFacts) -> String {
     };
     format!(
         "\nbridges and tunnels: {} with {} crossings; their heights are estimates{}{nodes}",
-        count(facts.spans),
-        count(facts.crossings),
+        noted(facts.spans),
+        noted(facts.crossings),
         reasons.collect::<String>(),
     )
 }

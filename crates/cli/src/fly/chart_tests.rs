@@ -2,26 +2,25 @@
 
 use std::{fs, path::PathBuf};
 
-use clap::ValueEnum as _;
-use corniche_viewer::gpu::PassTimes;
+use corniche_viewer::{Detail, gpu::PassTimes};
 
 use super::*;
 use crate::{
-    args::{Lod, Roads},
+    args::{DETAILS, ROADS, Roads},
     chart::draw,
     fly::measured_run::tests::frame,
 };
 
 #[test]
 fn a_chart_without_frames_is_a_chart() {
-    let runs = [MeasuredRun { lod: Lod::Adaptive, roads: Roads::Geo, frames: Vec::new() }];
+    let runs = [MeasuredRun { lod: Detail::Adaptive, roads: Roads::Geo, frames: Vec::new() }];
     let svg = flights(&runs, "an adapter").unwrap();
     assert!(svg.contains("<svg") && svg.contains("lod, roads geo") && !svg.contains("NaN"));
 }
 
 #[test]
 fn a_chart_says_which_clock_its_times_are_of() {
-    let run = |frames| [MeasuredRun { lod: Lod::Adaptive, roads: Roads::Geo, frames }];
+    let run = |frames| [MeasuredRun { lod: Detail::Adaptive, roads: Roads::Geo, frames }];
     let mut timed = vec![frame(1.0), frame(3.0), frame(3.0)];
     let svg = flights(&run(timed.clone()), "an adapter").unwrap();
     assert!(svg.contains("clock"), "{svg}");
@@ -45,7 +44,7 @@ fn segments_and_tiles_stand_below_the_times_and_axes_fit() {
             ..frame(2.0)
         })
         .collect();
-    let runs = [MeasuredRun { lod: Lod::Adaptive, roads: Roads::Geo, frames }];
+    let runs = [MeasuredRun { lod: Detail::Adaptive, roads: Roads::Geo, frames }];
     let svg = flights(&runs, "an adapter").unwrap();
     for caption in
         ["Time to draw a frame (an adapter)", "Road segments of a frame", "Tiles of a frame"]
@@ -87,8 +86,8 @@ fn runs_of(list: &str) -> Vec<MeasuredRun> {
             passes: Some(passes),
             ..frame(0.0)
         };
-        let lod = Lod::from_str(cell("lod"), false).unwrap();
-        let roads = Roads::from_str(cell("roads"), false).unwrap();
+        let (_, _, lod) = DETAILS.into_iter().find(|(word, ..)| *word == cell("lod")).unwrap();
+        let (_, _, roads) = ROADS.into_iter().find(|(word, ..)| *word == cell("roads")).unwrap();
         match runs.last_mut().filter(|run| (run.lod, run.roads) == (lod, roads)) {
             Some(run) => run.frames.push(record),
             None => runs.push(MeasuredRun { lod, roads, frames: vec![record] }),

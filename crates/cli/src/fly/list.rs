@@ -12,14 +12,13 @@ terrain_ms,areas_ms,roads_ms,composite_ms,bridges_ms\n";
 pub(crate) fn to_csv(runs: &[MeasuredRun]) -> String {
     let mut text = HEADINGS.to_owned();
     for run in runs {
+        let [lod, roads] = run.words();
         for frame in &run.frames {
             let [x, y, height_m] = frame.pose.eye_m;
             // Writing to a string cannot fail.
             let _ = write!(
                 text,
-                "{},{},{},{:.4},{x:.3},{y:.3},{height_m:.3},{:.3},{:.3},{},{},{},{},{},{},{},{},{:.3},{:.3},{:.3},{:.3}",
-                run.lod.word(),
-                run.roads.word(),
+                "{lod},{roads},{},{:.4},{x:.3},{y:.3},{height_m:.3},{:.3},{:.3},{},{},{},{},{},{},{},{},{:.3},{:.3},{:.3},{:.3}",
                 frame.frame,
                 frame.time_s,
                 frame.pose.orientation.heading_deg,

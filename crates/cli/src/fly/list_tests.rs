@@ -1,17 +1,19 @@
 //! Every line of the list of frames has every column.
 
+use corniche_viewer::Detail;
+
 use super::*;
-use crate::{
-    args::{Lod, Roads},
-    fly::measured_run::tests::frame,
-};
+use crate::{args::Roads, fly::measured_run::tests::frame};
 
 #[test]
 fn every_line_has_every_column() {
     let mut clockless = frame(8.0);
     clockless.passes = None;
-    let runs =
-        [MeasuredRun { lod: Lod::Culled, roads: Roads::Sv, frames: vec![frame(3.0), clockless] }];
+    let runs = [MeasuredRun {
+        lod: Detail::Culled,
+        roads: Roads::Sv,
+        frames: vec![frame(3.0), clockless],
+    }];
     let csv = to_csv(&runs);
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!(lines.len(), 3);

@@ -1,19 +1,24 @@
 //! One flight, frame by frame.
 
-use corniche_viewer::FrameRecord;
+use corniche_viewer::{Detail, FrameRecord};
 
-use crate::args::{Lod, Roads};
+use crate::args::{DETAILS, Roads, word_of};
 
 /// One flight with one method and one choice of tiles.
 pub(crate) struct MeasuredRun {
-    pub(crate) lod: Lod,
+    pub(crate) lod: Detail,
     pub(crate) roads: Roads,
     pub(crate) frames: Vec<FrameRecord>,
 }
 
 impl MeasuredRun {
+    /// Its two words on the command line: how much of the ground, and how roads are drawn.
+    pub(crate) fn words(&self) -> [&'static str; 2] {
+        [word_of(&DETAILS, &self.lod), self.roads.word()]
+    }
+
     pub(crate) fn name(&self) -> String {
-        format!("{}, roads {}", self.lod.word(), self.roads.word())
+        self.words().join(", roads ")
     }
 
     /// A warning if figures or pictures show less than was asked for.

@@ -38,7 +38,7 @@ pub(crate) fn frame(draw_ms: f64) -> FrameRecord {
 
 #[test]
 fn flights_that_show_less_than_they_seem_to_say_so() {
-    let run = |frames| MeasuredRun { lod: Lod::Adaptive, roads: Roads::Geo, frames };
+    let run = |frames| MeasuredRun { lod: Detail::Adaptive, roads: Roads::Geo, frames };
     let whole = FrameRecord { triangles: 10, tiles_missing: 0, ..frame(1.0) };
     let coarse = FrameRecord { tiles_missing: 3, ..whole };
     let empty = FrameRecord { triangles: 0, ..whole };

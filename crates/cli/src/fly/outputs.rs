@@ -12,7 +12,7 @@ use crate::{
     args::FlyArgs,
     exit::ExitCode,
     failure::Failure,
-    names::Format,
+    names::CHART,
     output::{Complete, Existing, Output, existing_of},
     styles,
 };
@@ -35,7 +35,7 @@ impl Outputs {
         let csv = Output::create(&args.output, existing, &used)?;
         used.push(&args.output);
         let svg = create(args.svg.as_deref(), existing, &mut used)?;
-        args.svg.as_deref().map_or(Ok(()), |path| Format::Chart.refuse_others(path))?;
+        args.svg.as_deref().map_or(Ok(()), |path| CHART.refuse_others(path))?;
         let save_path = create(args.flight.save_path.as_deref(), existing, &mut used)?;
         let pictures =
             args.png.as_deref().map(|folder| Pictures::create(folder, &used)).transpose()?;

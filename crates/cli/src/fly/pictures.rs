@@ -6,7 +6,6 @@ use corniche_store::{Claim, UnfinishedFolder};
 use corniche_viewer::Replay;
 
 use crate::{
-    exit::ExitCode,
     failure::Failure,
     interrupt, names,
     output::{self, png},
@@ -30,13 +29,10 @@ impl Pictures {
             return Err(unusable(&"it is a device or a pipe; give the name of a new folder"));
         }
         if target.symlink_metadata().is_ok() {
-            return Err(Failure::new(
-                ExitCode::Exists,
-                anyhow::anyhow!(
-                    "{} exists already; give the name of a new folder for the pictures",
-                    target.display()
-                ),
-            ));
+            return Err(Failure::exists(format!(
+                "{} exists already; give the name of a new folder for the pictures",
+                target.display()
+            )));
         }
         let claim = Claim::take(target).map_err(|error| unusable(&error))?;
         let folder = claim.begin_folder().map_err(|error| unusable(&error))?;
@@ -56,10 +52,7 @@ impl Pictures {
         interrupt::spare(&[folder]);
         let opened = self.folder.open_to_others();
         opened.and_then(|()| fs::rename(folder, target)).map_err(|error| {
-            Failure::new(
-                ExitCode::Failed,
-                anyhow::anyhow!("cannot move the pictures to {}: {error}", target.display()),
-            )
+            Failure::failed(format!("cannot move the pictures to {}: {error}", target.display()))
         })
     }
 }

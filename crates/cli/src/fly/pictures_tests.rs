@@ -1,6 +1,7 @@
 //! The pictures of a flight appear together or not at all.
 
 use super::*;
+use crate::exit::ExitCode;
 
 #[test]
 fn pictures_take_their_place_together_or_leave_nothing() {

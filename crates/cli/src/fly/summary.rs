@@ -6,6 +6,7 @@ use corniche_viewer::{FrameRecord, gpu::PassTimes};
 use super::measured_run::MeasuredRun;
 use crate::{
     args::Roads,
+    info::or_dash,
     table::{Digits, Table, bytes},
 };
 
@@ -43,7 +44,7 @@ fn drawn(runs: &[MeasuredRun], digits: Digits) -> String {
         table.row([
             run.name(),
             whole(&|frame| frame.tiles_drawn as f64),
-            mean(&|frame| frame.tiles_missing as f64).map_or_else(dash, |m| format!("{m:.1}")),
+            or_dash(mean(&|frame| frame.tiles_missing as f64), 1),
             whole(&|frame| frame.triangles as f64),
             most_of(&|frame| frame.triangles),
             whole(&|frame| frame.road_segments as f64),
@@ -108,7 +109,7 @@ fn times(runs: &[MeasuredRun]) -> String {
             two(percentile(&draw_ms, 50)),
             two(percentile(&draw_ms, 95)),
             two(percentile(&draw_ms, 100)),
-            average_ms.map_or_else(dash, |ms| format!("{:.1}", 1000.0 / ms)),
+            or_dash(average_ms.map(|ms| 1000.0 / ms), 1),
             pass(&PassTimes::total_ms),
             pass(&|passes| passes.terrain_ms),
             if has_areas { pass(&|passes| passes.areas_ms) } else { String::new() },
@@ -264,7 +265,7 @@ fn percentile(values: &[f64], percent: usize) -> Option<f64> {
 }
 
 fn two(value: Option<f64>) -> String {
-    value.map_or_else(dash, |value| format!("{value:.2}"))
+    or_dash(value, 2)
 }
 
 fn dash() -> String {

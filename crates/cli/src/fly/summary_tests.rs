@@ -1,11 +1,11 @@
 //! The summary of a flight counts the right frames and compares only what can be compared.
 
-use corniche_viewer::gpu::PassTimes;
+use corniche_viewer::{Detail, gpu::PassTimes};
 
 use super::*;
-use crate::{args::Lod, fly::measured_run::tests::frame};
+use crate::fly::measured_run::tests::frame;
 
-fn run(lod: Lod, roads: Roads, times_ms: [f64; 2]) -> MeasuredRun {
+fn run(lod: Detail, roads: Roads, times_ms: [f64; 2]) -> MeasuredRun {
     let frames = [1000.0].into_iter().chain(times_ms).map(frame).collect();
     MeasuredRun { lod, roads, frames }
 }
@@ -34,9 +34,9 @@ fn cells<'a>(text: &'a str, part: &str, name: &str) -> Vec<&'a str> {
 #[test]
 fn losses_are_of_frame_rates_and_against_the_same_tiles_without_roads() {
     let mut runs = [
-        run(Lod::Adaptive, Roads::None, [6.0, 8.0]),
-        run(Lod::Adaptive, Roads::Geo, [8.0, 10.0]),
-        run(Lod::Full, Roads::Geo, [100.0, 100.0]),
+        run(Detail::Adaptive, Roads::None, [6.0, 8.0]),
+        run(Detail::Adaptive, Roads::Geo, [8.0, 10.0]),
+        run(Detail::Full, Roads::Geo, [100.0, 100.0]),
     ];
     // 6 of 8 ms are left, so a quarter of the frames is lost; then a fifth. Of 18 ms in all, 14 are left.
     let Loss { total, mean, most } = loss(&runs[1], &runs[0], |frame| Some(frame.draw_ms)).unwrap();
@@ -59,13 +59,13 @@ fn losses_are_of_frame_rates_and_against_the_same_tiles_without_roads() {
 
 #[test]
 fn the_first_frame_counts_nowhere() {
-    let text = to_text(&[run(Lod::Adaptive, Roads::Sv, [8.0, 10.0])]);
+    let text = to_text(&[run(Detail::Adaptive, Roads::Sv, [8.0, 10.0])]);
     let sv = cells(&text, "milliseconds", "lod, roads sv");
     assert_eq!(sv[..5], ["9.00", "8.00", "10.00", "10.00", "111.1"], "{text}");
     assert!(!text.contains("1000.00") && !text.contains("loss"), "{text}");
     assert_eq!(text.matches("first frame left out").count(), 2, "{text}");
     // Nothing is left of a single frame.
-    let mut single = run(Lod::Adaptive, Roads::Sv, [8.0, 10.0]);
+    let mut single = run(Detail::Adaptive, Roads::Sv, [8.0, 10.0]);
     single.frames.truncate(1);
     let text = to_text(&[single]);
     assert!(!text.contains("NaN") && text.contains('–'), "{text}");
@@ -74,8 +74,8 @@ fn the_first_frame_counts_nowhere() {
 #[test]
 fn without_a_clock_on_the_card_there_are_no_times_of_it() {
     let mut runs = [
-        run(Lod::Adaptive, Roads::None, [6.0, 8.0]),
-        run(Lod::Adaptive, Roads::SvNoCaps, [8.0, 10.0]),
+        run(Detail::Adaptive, Roads::None, [6.0, 8.0]),
+        run(Detail::Adaptive, Roads::SvNoCaps, [8.0, 10.0]),
     ];
     runs[0].frames[2].passes = None;
     let text = to_text(&runs);
@@ -88,7 +88,7 @@ fn without_a_clock_on_the_card_there_are_no_times_of_it() {
 
 #[test]
 fn areas_have_a_column_where_there_are_some() {
-    let mut runs = [run(Lod::Adaptive, Roads::Sv, [8.0, 10.0])];
+    let mut runs = [run(Detail::Adaptive, Roads::Sv, [8.0, 10.0])];
     assert!(!to_text(&runs).contains("areas  "));
     for frame in &mut runs[0].frames {
         frame.passes = Some(PassTimes {
@@ -117,8 +117,8 @@ fn percentiles_are_values_that_were_measured() {
 /// A mean over frames lets a few slow frames count no more than quick ones; the total does not.
 #[test]
 fn a_dense_part_of_a_flight_shows_in_the_total() {
-    let bare = run(Lod::Adaptive, Roads::None, [10.0, 10.0]);
-    let dense = run(Lod::Adaptive, Roads::Sv, [10.0, 90.0]);
+    let bare = run(Detail::Adaptive, Roads::None, [10.0, 10.0]);
+    let dense = run(Detail::Adaptive, Roads::Sv, [10.0, 90.0]);
     let Loss { total, mean, most } = loss(&dense, &bare, |frame| Some(frame.draw_ms)).unwrap();
     assert!((total - 0.8).abs() < 1e-12, "{total}");
     assert!((mean - 4.0 / 9.0).abs() < 1e-12, "{mean}");
@@ -128,10 +128,10 @@ fn a_dense_part_of_a_flight_shows_in_the_total() {
 #[test]
 fn what_caps_cost_is_a_share_of_the_roads_pass_of_the_same_tiles() {
     let mut runs = [
-        run(Lod::Adaptive, Roads::Sv, [8.0, 8.0]),
-        run(Lod::Adaptive, Roads::SvNoCaps, [8.0, 8.0]),
-        run(Lod::Full, Roads::SvNoCaps, [8.0, 8.0]),
-        run(Lod::Adaptive, Roads::Geo, [8.0, 8.0]),
+        run(Detail::Adaptive, Roads::Sv, [8.0, 8.0]),
+        run(Detail::Adaptive, Roads::SvNoCaps, [8.0, 8.0]),
+        run(Detail::Full, Roads::SvNoCaps, [8.0, 8.0]),
+        run(Detail::Adaptive, Roads::Geo, [8.0, 8.0]),
     ];
     for (run, roads_ms) in runs.iter_mut().zip([8.0, 6.0, 1.0, 3.0]) {
         for frame in &mut run.frames {
@@ -156,7 +156,7 @@ fn what_caps_cost_is_a_share_of_the_roads_pass_of_the_same_tiles() {
 
 #[test]
 fn the_most_of_a_frame_stands_beside_the_average() {
-    let mut runs = [run(Lod::Full, Roads::Sv, [8.0, 8.0])];
+    let mut runs = [run(Detail::Full, Roads::Sv, [8.0, 8.0])];
     for (frame, count) in runs[0].frames.iter_mut().zip([9000, 100, 300]) {
         (frame.triangles, frame.road_segments) = (count, 2 * count);
     }
@@ -167,7 +167,7 @@ fn the_most_of_a_frame_stands_beside_the_average() {
 
 #[test]
 fn the_speed_is_that_over_true_ground_and_of_the_whole_flight() {
-    let mut runs = [run(Lod::Adaptive, Roads::Sv, [8.0, 8.0])];
+    let mut runs = [run(Detail::Adaptive, Roads::Sv, [8.0, 8.0])];
     let eyes_m = [[0.0, 0.0, 0.0], [600.0, 800.0, 0.0], [600.0, 800.0, 1000.0]];
     for ((frame, eye_m), time_s) in runs[0].frames.iter_mut().zip(eyes_m).zip([1.0, 3.0, 6.0]) {
         (frame.pose.eye_m, frame.time_s) = (eye_m, time_s);

@@ -6,7 +6,7 @@ use plotters::prelude::RGBColor;
 use super::{compare::Compared, factors::of_level};
 use crate::{
     chart::{Axes, Axis, Curve, MOST_SHAPES, Marks, Ticks, draw},
-    escaped::in_line,
+    escaped::{in_line, shortened},
     failure::Failure,
 };
 
@@ -32,6 +32,20 @@ fn aside(class: u8) -> f64 {
     MOST_ASIDE * (2.0 * f64::from(class) / last - 1.0)
 }
 
+/// The axes of a chart with growth up to the highest one.
+fn axes(x: Axis, highest: f64) -> Axes {
+    Axes {
+        size_px: (900, 520),
+        caption: "Vertices of clipped roads over the level's simplified lines".to_owned(),
+        x,
+        y: Axis {
+            description: "times the vertices",
+            range: 0.0..highest * 1.08,
+            ticks: Ticks::Round,
+        },
+    }
+}
+
 /// Growth of clipped vertices over the level's own simplified line, one curve a class over the levels.
 pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
     let factor = |geo: u64, simplified: u64| geo as f64 / simplified as f64;
@@ -42,19 +56,10 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
         .fold(1.0_f64, f64::max);
     let levels = || rows.iter().map(|row| row.level);
     let [first, last] = [levels().min(), levels().max()].map(Option::unwrap_or_default);
-    let axes = Axes {
-        size_px: (900, 520),
-        caption: "Vertices of clipped roads over the level's simplified lines".to_owned(),
-        x: Axis {
-            description: "level (0 = root)",
-            range: f64::from(first) - MOST_ASIDE - 0.1..f64::from(last) + MOST_ASIDE + 0.1,
-            ticks: Ticks::Whole(usize::from(last - first) + 1),
-        },
-        y: Axis {
-            description: "times the vertices",
-            range: 0.0..highest * 1.08,
-            ticks: Ticks::Round,
-        },
+    let x = Axis {
+        description: "level (0 = root)",
+        range: f64::from(first) - MOST_ASIDE - 0.1..f64::from(last) + MOST_ASIDE + 0.1,
+        ticks: Ticks::Whole(usize::from(last - first) + 1),
     };
     let curve = |(class, color): (u8, RGBColor)| {
         let of_class = rows.iter().filter(|row| row.class == class);
@@ -72,7 +77,7 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
         })
     };
     let curves: Vec<Curve> = (0_u8..).zip(CLASS_COLORS).filter_map(curve).collect();
-    draw(&axes, &curves)
+    draw(&axes(x, highest), &curves)
 }
 
 /// How far the marks of packages stand beside their level at most, levels.
@@ -98,7 +103,7 @@ pub(crate) fn comparison(packages: &[Compared<'_>]) -> anyhow::Result<String> {
     let points = |package: &Compared<'_>| -> Vec<(f64, f64)> {
         let levels = package.manifest.levels.iter();
         let point = |level: &corniche_tileset::LevelRecord| {
-            let growth = of_level(package.manifest, level.level).1.over_simplified?;
+            let growth = of_level(package.manifest, level.level).1.growth_over_simplified?;
             Some(((level.cell_m.shorter_m() / unit_m).log2(), growth))
         };
         levels.filter_map(point).collect()
@@ -120,34 +125,21 @@ pub(crate) fn comparison(packages: &[Compared<'_>]) -> anyhow::Result<String> {
         (least.min(x), most.max(x))
     });
     let (least, most) = if least <= most { (least, most) } else { (0.0, 0.0) };
-    let axes = Axes {
-        size_px: (900, 520),
-        caption: "Vertices of clipped roads over the level's simplified lines".to_owned(),
-        x: Axis {
-            description: "cell of the level, m",
-            range: least - PACKAGES_ASIDE - 0.1..most + PACKAGES_ASIDE + 0.1,
-            ticks: Ticks::Doubled {
-                count: (most.floor() - least.ceil()).max(0.0) as usize + 1,
-                unit: unit_m,
-            },
-        },
-        y: Axis {
-            description: "times the vertices",
-            range: 0.0..highest * 1.08,
-            ticks: Ticks::Round,
+    let x = Axis {
+        description: "cell of the level, m",
+        range: least - PACKAGES_ASIDE - 0.1..most + PACKAGES_ASIDE + 0.1,
+        ticks: Ticks::Doubled {
+            count: (most.floor() - least.ceil()).max(0.0) as usize + 1,
+            unit: unit_m,
         },
     };
-    draw(&axes, &curves)
+    draw(&axes(x, highest), &curves)
 }
 
 /// The file's name without folders and ending, cut if it is long.
 fn short_name(path: &str) -> String {
     let stem = std::path::Path::new(path).file_stem().unwrap_or_default().to_string_lossy();
-    let stem = in_line(&stem).into_owned();
-    if stem.chars().count() <= LONGEST_NAME {
-        return stem;
-    }
-    stem.chars().take(LONGEST_NAME - 1).chain(['…']).collect()
+    shortened(&in_line(&stem), LONGEST_NAME).into_owned()
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use corniche_settings::SettingValue;
 use corniche_tileset::{
     DatumOperationRecord, FilePackage, InputKind, InputRecord, Manifest, SettingsRecord,
 };
@@ -81,7 +82,7 @@ pub(crate) fn differences(packages: &[Compared<'_>]) -> Vec<Difference> {
 }
 
 /// Settings that are not compared, or in words of their own.
-const NOT_AS_THEY_ARE: [&str; 16] = [
+const NOT_AS_THEY_ARE: [&str; 26] = [
     // These are what is studied.
     "max_error_m",
     "cell_m",
@@ -97,6 +98,16 @@ const NOT_AS_THEY_ARE: [&str; 16] = [
     // They follow from the table.
     "class_labels",
     // These have words of their own.
+    "dem_band",
+    "dem_crs",
+    "dem_vertical_crs",
+    "vertical_crs",
+    "vertical_shift_m",
+    "vertical_unit",
+    "nodata",
+    "fill_voids",
+    "bounds_deg",
+    "polygon",
     "height_range_m",
     "scale_latitude_deg",
     "frc_table",
@@ -108,63 +119,56 @@ const NOT_AS_THEY_ARE: [&str; 16] = [
 /// Everything that growth depends on, but for cell and error bound, which are what is studied.
 fn properties(manifest: &Manifest) -> Vec<Property> {
     let settings = &manifest.settings;
-    let mut facts = settings.facts();
-    facts.retain(|fact| !NOT_AS_THEY_ARE.contains(&fact.key));
-    // The value of a setting in one line, else what holds without it.
-    let mut take = |key: &str, without: &str| {
-        let place = facts.iter().position(|fact| fact.key == key);
-        let value = place.map(|place| facts.remove(place).value);
-        match value.as_deref() {
-            None | Some("not given" | "none") => without.to_owned(),
-            Some(value) => in_line(value).into_owned(),
-        }
-    };
+    let nodata = Some(&settings.nodata).filter(|values| !values.is_empty());
+    let usual = || "the default".to_owned();
     let mut properties = vec![
         ("extract", inputs(manifest, &[InputKind::Osm])),
         ("elevation data", inputs(manifest, &InputKind::OF_TERRAIN)),
-        ("band of the elevation data", take("dem_band", "the only one")),
+        ("band of the elevation data", or(settings.dem_band.as_ref(), "the only one")),
         ("operations between datums", datum_operations(&manifest.datum_operations)),
-        ("CRS of the elevation data", take("dem_crs", "as in its files")),
-        ("its vertical CRS", take("dem_vertical_crs", "as in its files")),
-        ("vertical CRS", take("vertical_crs", "that of the elevation data")),
-        ("vertical shift", take("vertical_shift_m", "") + " m"),
-        ("vertical unit", take("vertical_unit", "that of the elevation data")),
-        ("values without data", take("nodata", "as in the files")),
-        ("height range", height_range(settings.height_range_m)),
-        ("voids filled", format!("with data within {} cells", take("fill_voids", ""))),
+        ("CRS of the elevation data", or(settings.dem_crs.as_ref(), "as in its files")),
+        ("its vertical CRS", or(settings.dem_vertical_crs.as_ref(), "as in its files")),
+        ("vertical CRS", or(settings.vertical_crs.as_ref(), "that of the elevation data")),
+        ("vertical shift", format!("{} m", settings.vertical_shift_m)),
+        ("vertical unit", or(settings.vertical_unit.as_ref(), "that of the elevation data")),
+        ("values without data", or(nodata, "as in the files")),
+        (
+            "height range",
+            settings.height_range_m.map_or_else(usual, |[low, high]| format!("{low} to {high} m")),
+        ),
+        ("voids filled", format!("with data within {} cells", settings.fill_voids)),
         ("classes", classes(settings)),
         ("classes by level", classes_by_level(&settings.class_max_cell_m)),
-        ("simplification", simplification(settings.simplify_cells)),
+        (
+            "simplification",
+            match settings.simplify_cells {
+                cells if cells > 0.0 => format!("{cells} cells of the level"),
+                _ => "none".to_owned(),
+            },
+        ),
         ("CRS", in_line(&manifest.crs).into_owned()),
-        ("scale latitude", scale_latitude(settings.scale_latitude_deg)),
-        ("bounds", take("bounds_deg", "all of the elevation data")),
-        ("polygon", take("polygon", "none")),
+        (
+            "scale latitude",
+            settings.scale_latitude_deg.map_or_else(usual, |latitude| format!("{latitude}°")),
+        ),
+        ("bounds", or(settings.bounds_deg.as_ref(), "all of the elevation data")),
+        ("polygon", or(settings.polygon.as_ref(), "none")),
     ];
     // New settings need no words of their own.
-    let others = facts.into_iter().map(|fact| (fact.name, in_line(&fact.value).into_owned()));
-    properties.extend(others);
+    let others = settings.facts().into_iter().filter(|fact| !NOT_AS_THEY_ARE.contains(&fact.key));
+    properties.extend(others.map(|fact| (fact.name, in_line(&fact.value).into_owned())));
     properties
+}
+
+/// The value of a setting in one line, else what holds without it.
+fn or(value: Option<&impl SettingValue>, without: &str) -> String {
+    value.map_or_else(|| without.to_owned(), |value| in_line(&value.text()).into_owned())
 }
 
 /// How positions came from one datum to another.
 fn datum_operations(found: &[DatumOperationRecord]) -> String {
     let texts: Vec<String> = found.iter().map(datum_operation).collect();
     if texts.is_empty() { "none".to_owned() } else { texts.join("; ") }
-}
-
-/// Heights that samples may have.
-fn height_range(range_m: Option<[f64; 2]>) -> String {
-    range_m.map_or_else(|| "the default".to_owned(), |[low, high]| format!("{low} to {high} m"))
-}
-
-/// How much roads are simplified.
-fn simplification(cells: f64) -> String {
-    if cells > 0.0 { format!("{cells} cells of the level") } else { "none".to_owned() }
-}
-
-/// The latitude at which lengths are true.
-fn scale_latitude(latitude_deg: Option<f64>) -> String {
-    latitude_deg.map_or_else(|| "the default".to_owned(), |latitude| format!("{latitude}°"))
 }
 
 /// The inputs of some kinds by name and hash.
@@ -208,12 +212,8 @@ impl Difference {
     pub(crate) fn text(&self, packages: &[Compared<'_>]) -> String {
         let labels = |of: &[usize]| list(of.iter().map(|&index| &packages[index].label));
         let value = |(of, value): &(Vec<usize>, String)| format!("{}: {value}", labels(of));
-        format!("{}: {}", self.what, list_of(self.values.iter().map(value)))
+        format!("{}: {}", self.what, self.values.iter().map(value).collect::<Vec<_>>().join("; "))
     }
-}
-
-fn list_of(parts: impl Iterator<Item = String>) -> String {
-    parts.collect::<Vec<_>>().join("; ")
 }
 
 /// The comparison for people.
@@ -265,9 +265,9 @@ fn wholes(packages: &[Compared<'_>], digits: Digits) -> Table {
             digits.count(all.source_vertices),
             digits.count(finest.geo_vertices),
             digits.count(all.geo_vertices),
-            factor(finest_factors.over_source),
-            factor(factors.over_source),
-            factor(factors.stored_bytes),
+            factor(finest_factors.growth_over_source),
+            factor(factors.growth_over_source),
+            factor(factors.stored_bytes_over_source),
         ]);
     }
     table
@@ -297,10 +297,10 @@ fn levels(packages: &[Compared<'_>], digits: Digits) -> Table {
                 digits.count(row.source_vertices),
                 digits.count(row.simplified_vertices),
                 digits.count(row.geo_vertices),
-                factor(factors.over_simplified),
-                factor(factors.over_source),
-                factor(factors.raw_bytes),
-                factor(factors.stored_bytes),
+                factor(factors.growth_over_simplified),
+                factor(factors.growth_over_source),
+                factor(factors.raw_bytes_over_source),
+                factor(factors.stored_bytes_over_source),
             ]);
         }
     }

@@ -2,8 +2,8 @@
 
 use corniche_tileset::{GrowthRow, Manifest};
 
-use super::factors::{Factors, factors, of_level, whole};
-use crate::defects::quoted;
+use super::factors::{factors, of_level, whole};
+use crate::{defects::quoted, documents::growth::Factors};
 
 const HEADINGS: &str = "level,class,source_vertices,simplified_vertices,geo_vertices,sv_vertices,source_bytes,simplified_bytes,\
                         geo_raw_bytes,geo_stored_bytes,sv_stored_bytes,growth_over_simplified,growth_over_source,\
@@ -11,28 +11,20 @@ const HEADINGS: &str = "level,class,source_vertices,simplified_vertices,geo_vert
 
 /// The rows of one package, under headings.
 pub(crate) fn to_csv(manifest: &Manifest) -> String {
-    let mut text = format!("{HEADINGS}\n");
-    for line in lines(manifest) {
-        text.push_str(&line);
-        text.push('\n');
-    }
-    text
+    format!("{HEADINGS}\n{}", rows("", manifest))
 }
 
 /// The rows of several packages, with their names in front.
 pub(crate) fn to_csv_of_several<'a>(
     packages: impl IntoIterator<Item = (&'a str, &'a Manifest)>,
 ) -> String {
-    let mut text = format!("package,{HEADINGS}\n");
-    for (name, manifest) in packages {
-        for line in lines(manifest) {
-            text.push_str(&quoted(name));
-            text.push(',');
-            text.push_str(&line);
-            text.push('\n');
-        }
-    }
-    text
+    let rows =
+        packages.into_iter().map(|(name, manifest)| rows(&format!("{},", quoted(name)), manifest));
+    format!("package,{HEADINGS}\n{}", rows.collect::<String>())
+}
+
+fn rows(begin: &str, manifest: &Manifest) -> String {
+    lines(manifest).iter().map(|line| [begin, line, "\n"].concat()).collect()
 }
 
 /// A row for each level and class, then for each level, then for the whole; ratios are empty where there is nothing to divide by.
@@ -53,12 +45,12 @@ fn lines(manifest: &Manifest) -> Vec<String> {
 fn line(level: &str, class: &str, row: &GrowthRow, factors: &Factors) -> String {
     let counts = row.counts().map(|count| count.to_string());
     let ratios = [
-        factors.over_simplified,
-        factors.over_source,
-        factors.raw_bytes,
-        factors.stored_bytes,
-        factors.raw_over_simplified,
-        factors.stored_over_simplified,
+        factors.growth_over_simplified,
+        factors.growth_over_source,
+        factors.raw_bytes_over_source,
+        factors.stored_bytes_over_source,
+        factors.raw_bytes_over_simplified,
+        factors.stored_bytes_over_simplified,
     ];
     let ratios = ratios.map(|ratio| ratio.map_or_else(String::new, |ratio| ratio.to_string()));
     let cells = [level, class].into_iter().chain(counts.iter().chain(&ratios).map(String::as_str));

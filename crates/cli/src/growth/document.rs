@@ -19,23 +19,18 @@ pub(crate) fn document(manifest: &Manifest) -> GrowthDocument {
             geo_raw_bytes: row.geo_raw_bytes,
             geo_stored_bytes: row.geo_stored_bytes,
             sv_stored_bytes: row.sv_stored_bytes,
-            growth_over_simplified: factors.over_simplified,
-            growth_over_source: factors.over_source,
-            raw_bytes_over_simplified: factors.raw_over_simplified,
-            stored_bytes_over_simplified: factors.stored_over_simplified,
-            raw_bytes_over_source: factors.raw_bytes,
-            stored_bytes_over_source: factors.stored_bytes,
+            factors,
         }
     };
     GrowthDocument {
-        rows: manifest.growth.iter().map(Into::into).collect(),
+        rows: manifest.growth.clone(),
         levels: manifest.levels.iter().map(|record| level(record.level)).collect(),
         all_levels: WholeGrowthDocument {
             source_vertices: all.source_vertices,
             geo_vertices: all.geo_vertices,
-            growth_over_source: all_factors.over_source,
-            raw_bytes_over_source: all_factors.raw_bytes,
-            stored_bytes_over_source: all_factors.stored_bytes,
+            growth_over_source: all_factors.growth_over_source,
+            raw_bytes_over_source: all_factors.raw_bytes_over_source,
+            stored_bytes_over_source: all_factors.stored_bytes_over_source,
         },
         paper: PAPER_GROWTH,
     }

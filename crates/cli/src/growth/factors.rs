@@ -2,6 +2,8 @@
 
 use corniche_tileset::{GrowthRow, Manifest};
 
+use crate::documents::growth::Factors;
+
 /// "The preprocessing step for the geometric approach … increased the size of the road data by about a factor of ten in all tested cases":
 /// Vaaraniemi, Treib & Westermann 2011, section 7.
 pub(crate) const PAPER_GROWTH: f64 = 10.0;
@@ -21,22 +23,6 @@ fn sum<'a>(rows: impl Iterator<Item = &'a GrowthRow>) -> GrowthRow {
         geo_stored_bytes: sum.geo_stored_bytes + row.geo_stored_bytes,
         sv_stored_bytes: sum.sv_stored_bytes + row.sv_stored_bytes,
     })
-}
-
-/// Growth factors of a row, or of a sum of rows.
-pub(crate) struct Factors {
-    /// Clipped vertices over the level's own simplified line.
-    pub(crate) over_simplified: Option<f64>,
-    /// Clipped vertices over the source.
-    pub(crate) over_source: Option<f64>,
-    /// Clipped bytes, raw, over the source's.
-    pub(crate) raw_bytes: Option<f64>,
-    /// Clipped bytes, stored, over the source's.
-    pub(crate) stored_bytes: Option<f64>,
-    /// Clipped bytes, raw, over the level's own simplified line's.
-    pub(crate) raw_over_simplified: Option<f64>,
-    /// Clipped bytes, stored, over the level's own simplified line's.
-    pub(crate) stored_over_simplified: Option<f64>,
 }
 
 /// All levels together cost the sum of the levels, against one copy of the source: what the finest level, which
@@ -63,11 +49,11 @@ pub(crate) fn of_level(manifest: &Manifest, level: u8) -> (GrowthRow, Factors) {
 pub(crate) fn factors(row: &GrowthRow) -> Factors {
     let ratio = |above: u64, below: u64| (below > 0).then(|| above as f64 / below as f64);
     Factors {
-        over_simplified: ratio(row.geo_vertices, row.simplified_vertices),
-        over_source: ratio(row.geo_vertices, row.source_vertices),
-        raw_bytes: ratio(row.geo_raw_bytes, row.source_bytes),
-        stored_bytes: ratio(row.geo_stored_bytes, row.source_bytes),
-        raw_over_simplified: ratio(row.geo_raw_bytes, row.simplified_bytes),
-        stored_over_simplified: ratio(row.geo_stored_bytes, row.simplified_bytes),
+        growth_over_simplified: ratio(row.geo_vertices, row.simplified_vertices),
+        growth_over_source: ratio(row.geo_vertices, row.source_vertices),
+        raw_bytes_over_source: ratio(row.geo_raw_bytes, row.source_bytes),
+        stored_bytes_over_source: ratio(row.geo_stored_bytes, row.source_bytes),
+        raw_bytes_over_simplified: ratio(row.geo_raw_bytes, row.simplified_bytes),
+        stored_bytes_over_simplified: ratio(row.geo_stored_bytes, row.simplified_bytes),
     }
 }

@@ -8,7 +8,6 @@ use corniche_store::folder_of;
 use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{
-    exit::ExitCode,
     export::MEMORY_BYTES,
     failure::Failure,
     output::{Complete, Output, failed},
@@ -28,14 +27,13 @@ pub(crate) fn fill(
     output.write_all(headings(manifest).as_bytes()).map_err(cannot)?;
     let mut sums = Sums::new(manifest);
     let mut ways = 0_u64;
-    let progress = Progress::new();
-    let told = growth_by_way(package, folder_of(path), MEMORY_BYTES, &progress, |way| {
-        ways += 1;
-        sums.add(way);
-        output.write_all(line(way).as_bytes()).map_err(cannot)
-    });
-    progress.finish();
-    told?;
+    Progress::of(|progress| {
+        growth_by_way(package, folder_of(path), MEMORY_BYTES, progress, |way| {
+            ways += 1;
+            sums.add(way);
+            output.write_all(line(way).as_bytes()).map_err(cannot)
+        })
+    })?;
     sums.fit(manifest, package.path())?;
     let mut off_ground = 0;
     for (class, points) in sums.left(manifest) {
@@ -113,17 +111,14 @@ impl Sums {
             let sums = self.geo.get(usize::from(row.level));
             let found = sums.and_then(|sums| sums.get(usize::from(row.class))).copied();
             if found != Some(row.geo_vertices) {
-                return Err(Failure::new(
-                    ExitCode::Unusable,
-                    anyhow::anyhow!(
-                        "{}: FRC {} has {} vertices on level {} in the growth table, and {} in the tiles; corniche verify says more",
-                        package.display(),
-                        row.class,
-                        row.geo_vertices,
-                        row.level,
-                        found.unwrap_or_default()
-                    ),
-                ));
+                return Err(Failure::unusable(format!(
+                    "{}: FRC {} has {} vertices on level {} in the growth table, and {} in the tiles; corniche verify says more",
+                    package.display(),
+                    row.class,
+                    row.geo_vertices,
+                    row.level,
+                    found.unwrap_or_default()
+                )));
             }
         }
         Ok(())

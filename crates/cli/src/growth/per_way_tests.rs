@@ -5,6 +5,7 @@ use corniche_testing::package;
 use corniche_tileset::GrowthRow;
 
 use super::*;
+use crate::exit::ExitCode;
 
 fn way(class: u8, source_vertices: u64, geo_vertices: &[u64]) -> WayGrowth {
     WayGrowth {

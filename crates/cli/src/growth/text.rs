@@ -2,12 +2,16 @@
 
 use corniche_tileset::{GrowthRow, Manifest};
 
-use super::factors::{Factors, PAPER_GROWTH, factors, of_level, whole};
-use crate::table::{Digits, Table, bytes};
+use super::factors::{PAPER_GROWTH, factors, of_level, whole};
+use crate::{
+    documents::growth::Factors,
+    info::or_dash,
+    table::{Digits, Table, bytes},
+};
 
 /// A growth factor; a dash where there is nothing to divide by.
 pub(crate) fn factor(value: Option<f64>) -> String {
-    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"))
+    or_dash(value, 2)
 }
 
 fn line(name: String, row: &GrowthRow, factors: &Factors, digits: Digits) -> [String; 13] {
@@ -18,14 +22,14 @@ fn line(name: String, row: &GrowthRow, factors: &Factors, digits: Digits) -> [St
         count(row.simplified_vertices),
         count(row.geo_vertices),
         count(row.sv_vertices),
-        factor(factors.over_simplified),
-        factor(factors.over_source),
+        factor(factors.growth_over_simplified),
+        factor(factors.growth_over_source),
         bytes(row.geo_raw_bytes),
         bytes(row.geo_stored_bytes),
-        factor(factors.raw_bytes),
-        factor(factors.stored_bytes),
-        factor(factors.raw_over_simplified),
-        factor(factors.stored_over_simplified),
+        factor(factors.raw_bytes_over_source),
+        factor(factors.stored_bytes_over_source),
+        factor(factors.raw_bytes_over_simplified),
+        factor(factors.stored_bytes_over_simplified),
     ]
 }
 
@@ -64,8 +68,8 @@ pub(crate) fn to_text(manifest: &Manifest, digits: Digits) -> String {
          ({} as stored);\nVaaraniemi, Treib & Westermann 2011, section 7, report about {PAPER_GROWTH} times the size of the data.\n",
         levels.to_text(),
         classes.to_text(),
-        factor(all_factors.over_source),
-        factor(all_factors.raw_bytes),
-        factor(all_factors.stored_bytes),
+        factor(all_factors.growth_over_source),
+        factor(all_factors.raw_bytes_over_source),
+        factor(all_factors.stored_bytes_over_source),
     )
 }

@@ -1,50 +1,60 @@
-//! Files that a command writes beside its answer: a picture and a list.
+//! Files that a command writes beside its answer: a picture and lists.
 
 use std::path::Path;
 
 use super::{Complete, Existing, Output};
-use crate::{failure::Failure, names::Format};
+use crate::{failure::Failure, names::CHART};
 
 /// The files that are wanted, begun but not written.
-pub(crate) struct ReportFiles {
+pub(crate) struct ReportFiles<const LISTS: usize> {
     /// The one of `--svg`.
     svg: Option<Output>,
-    /// The one of the option for a list.
-    list: Option<Output>,
+    /// The files of the options for lists.
+    lists: [Option<Output>; LISTS],
 }
 
-impl ReportFiles {
-    /// Looks at both places before any work is done. `list` comes with its option; `inputs` are what the command reads.
+impl<const LISTS: usize> ReportFiles<LISTS> {
+    /// Looks at all places before any work is done. Lists come with their options; `inputs` are what the command reads.
     pub(crate) fn begin<'a>(
         svg: Option<&'a Path>,
-        (option, list): (&str, Option<&'a Path>),
+        lists: [(&str, Option<&'a Path>); LISTS],
         inputs: &[&'a Path],
         existing: Existing,
     ) -> Result<Self, Failure> {
-        if svg.is_some() && svg == list {
-            let reason = format!("--svg and {option} name one file; give each its own");
-            return Err(Failure::unusable(reason));
+        for (option, list) in lists {
+            if svg.is_some() && svg == list {
+                let reason = format!("--svg and {option} name one file; give each its own");
+                return Err(Failure::unusable(reason));
+            }
         }
+        let lists = lists.map(|(_, list)| list);
         let begin = |path: &'a Path| {
-            let targets = svg.into_iter().chain(list).filter(|&target| target != path);
+            let targets = svg.into_iter().chain(lists.into_iter().flatten());
+            let targets = targets.filter(|&target| target != path);
             let others: Vec<&Path> = inputs.iter().copied().chain(targets).collect();
             Output::create(path, existing, &others)
         };
-        let files = Self { svg: svg.map(begin).transpose()?, list: list.map(begin).transpose()? };
+        let mut files = Self { svg: svg.map(begin).transpose()?, lists: [const { None }; LISTS] };
+        for (file, list) in files.lists.iter_mut().zip(lists) {
+            *file = list.map(begin).transpose()?;
+        }
         // What is no file at all is told first.
-        svg.map_or(Ok(()), |path| Format::Chart.refuse_others(path))?;
+        svg.map_or(Ok(()), |path| CHART.refuse_others(path))?;
         Ok(files)
     }
 
-    /// Writes both, and puts them in their places once both are complete: an end before that leaves neither. `make_svg` gives the picture; `fill_list`
-    /// writes the list.
+    /// Writes all, and puts them in their places once all are complete: an end before that leaves none. `make_svg` gives the picture; `fill_list`
+    /// writes the list of a number.
     pub(crate) fn write(
         self,
-        fill_list: impl FnOnce(Output) -> Result<Complete, Failure>,
+        mut fill_list: impl FnMut(usize, Output) -> Result<Complete, Failure>,
         make_svg: impl FnOnce() -> Result<String, Failure>,
     ) -> Result<(), Failure> {
-        let list = self.list.map(fill_list).transpose()?;
+        let mut written = Vec::new();
+        for (number, list) in self.lists.into_iter().enumerate() {
+            written.extend(list.map(|output| fill_list(number, output)).transpose()?);
+        }
         let svg = self.svg.map(|output| output.fill(make_svg()?.as_bytes())).transpose()?;
-        list.into_iter().chain(svg).try_for_each(Complete::place)
+        written.into_iter().chain(svg).try_for_each(Complete::place)
     }
 }

@@ -3,26 +3,19 @@
 /// Parts of an effort of 1: efforts are counted in whole numbers.
 const PARTS: f64 = 16.0;
 
-/// Runs of equal steps, one after the other.
+/// Runs of equal steps, one after the other: how many steps, and the effort of each.
 #[derive(Debug, Clone)]
-pub(crate) struct Efforts {
-    /// How many steps, and the effort of each.
-    runs: Vec<(u64, f64)>,
-}
+pub(crate) struct Efforts(pub(crate) Vec<(u64, f64)>);
 
 impl Efforts {
-    pub(crate) fn new(runs: Vec<(u64, f64)>) -> Self {
-        Self { runs }
-    }
-
     /// The effort of the first steps, of so many in all. Where these are fewer than was expected, steps after the first run are left out.
     pub(crate) fn until(&self, done: u64, total: Option<u64>) -> u64 {
-        let expected: u64 = self.runs.iter().map(|(steps, _)| steps).sum();
-        let first = self.runs.first().map_or(0, |(steps, _)| *steps);
+        let expected: u64 = self.0.iter().map(|(steps, _)| steps).sum();
+        let first = self.0.first().map_or(0, |(steps, _)| *steps);
         let left_out = expected.saturating_sub(total.unwrap_or(expected));
         let mut rest = if done > first { done + left_out } else { done };
         let mut effort = 0.0;
-        for &(steps, each) in &self.runs {
+        for &(steps, each) in &self.0 {
             let own = rest.min(steps);
             effort += own as f64 * each;
             rest -= own;

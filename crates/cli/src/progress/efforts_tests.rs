@@ -6,7 +6,7 @@ use super::*;
 
 #[test]
 fn steps_count_by_what_they_take() {
-    let efforts = Efforts::new(vec![(10, 1.0), (4, 2.5), (1, 30.0)]);
+    let efforts = Efforts(vec![(10, 1.0), (4, 2.5), (1, 30.0)]);
     let of = |done| efforts.until(done, Some(15)) as f64 / PARTS;
     assert_eq!([of(0), of(10), of(11), of(14), of(15)], [0.0, 10.0, 12.5, 20.0, 50.0]);
     for done in 0..=15 {
@@ -18,7 +18,7 @@ fn steps_count_by_what_they_take() {
 /// Two of the four are not made: when all is done, nothing is left.
 #[test]
 fn steps_that_are_left_out_take_nothing() {
-    let efforts = Efforts::new(vec![(10, 1.0), (4, 2.5), (1, 30.0)]);
+    let efforts = Efforts(vec![(10, 1.0), (4, 2.5), (1, 30.0)]);
     assert_eq!(efforts.after(13, Some(13)), 0);
     assert_eq!(efforts.after(12, Some(13)) as f64 / PARTS, 30.0);
     assert_eq!(efforts.until(10, Some(13)) as f64 / PARTS, 10.0);
@@ -43,7 +43,7 @@ fn a_stage_whose_last_steps_are_long_is_foreseen() {
         })
         .collect();
     let end_s: f64 = truth.iter().sum();
-    let efforts = Efforts::new(runs);
+    let efforts = Efforts(runs);
     let (mut by_effort, mut by_steps) = (Pace::new(), Pace::new());
     let (mut now_s, mut worst, mut worst_by_steps) = (0.0, 1.0_f64, 1.0_f64);
     for (done, took_s) in (1..).zip(truth) {

@@ -9,7 +9,7 @@ use image::RgbaImage;
 use crate::{
     args::{PrintScale, RenderArgs},
     failure::Failure,
-    names::Format,
+    names::{MAP, PICTURE},
     output::{Complete, Output, existing_of, named::NamedOutput, png},
 };
 
@@ -23,14 +23,12 @@ pub(crate) struct PictureFiles {
 }
 
 enum Files {
-    Png { picture: Output, place: Option<Box<PlaceFiles>> },
+    Png {
+        picture: Output,
+        /// Beside it: a world file and a coordinate system.
+        place: Option<Box<[Output; 2]>>,
+    },
     Map(NamedOutput),
-}
-
-/// The files beside a PNG.
-struct PlaceFiles {
-    world: Output,
-    prj: Output,
 }
 
 impl PictureFiles {
@@ -38,20 +36,19 @@ impl PictureFiles {
     pub(crate) fn create(args: &RenderArgs, used: &[&Path]) -> Result<Self, Failure> {
         let (target, existing) = (args.output.as_path(), existing_of(args.overwrite));
         let from_above = &args.from_above;
-        if Format::Map.is_of(target) {
-            refuse_map(target, from_above.is_from_above(), from_above.world_file)?;
+        if MAP.is_of(target) {
+            refuse_map(target, from_above.ortho, from_above.world_file)?;
             let map = NamedOutput::create(target, existing, "map.tif".to_owned(), used)?;
             return Ok(Self { target: target.to_path_buf(), files: Files::Map(map) });
         }
         let picture = Output::create(target, existing, used)?;
-        Format::Picture.refuse_others(target)?;
+        PICTURE.refuse_others(target)?;
         if !from_above.world_file {
             refuse_other_place(target)?;
         }
         let place = from_above.world_file.then(|| {
             let beside = |ending| Output::create(&target.with_extension(ending), existing, used);
-            let files = PlaceFiles { world: beside("pgw")?, prj: beside("prj")? };
-            Ok::<_, Failure>(Box::new(files))
+            Ok::<_, Failure>(Box::new([beside("pgw")?, beside("prj")?]))
         });
         let files = Files::Png { picture, place: place.transpose()? };
         Ok(Self { target: target.to_path_buf(), files })
@@ -79,7 +76,7 @@ impl PictureFiles {
             (Files::Png { picture: file, place: beside }, place) => {
                 let mut written = Vec::new();
                 if let (Some(beside), Some(place)) = (beside, place) {
-                    let PlaceFiles { world, prj } = *beside;
+                    let [world, prj] = *beside;
                     written.push(world.fill(place.world_file().as_bytes())?);
                     written.push(prj.fill(place.prj().as_bytes())?);
                 }

@@ -11,7 +11,6 @@ use super::{
     shown::{LIST, Shown, list},
 };
 use crate::{
-    exit::ExitCode,
     failure::Failure,
     interrupt, names,
     output::{Existing, failed, folder::FolderOutput},
@@ -69,13 +68,10 @@ fn copy(file: &Path, place: &Path, target: &Path) -> Result<(), Failure> {
     }
     let after = version(&from).map_err(unread)?;
     if before != after || copied != before.0 {
-        return Err(Failure::new(
-            ExitCode::Failed,
-            anyhow::anyhow!(
-                "{} changed while it was copied; run the command again",
-                file.display()
-            ),
-        ));
+        return Err(Failure::failed(format!(
+            "{} changed while it was copied; run the command again",
+            file.display()
+        )));
     }
     Ok(())
 }

@@ -141,10 +141,9 @@ pub(crate) fn after_failure(
     observer: &dyn Observer,
 ) {
     let input_bytes = plan.inputs.iter().map(|input| input.bytes).fold(0, u64::saturating_add);
-    let mut kinds = Kind::ALL
-        .iter()
-        .filter(|&&kind| kind != Kind::InputHash || input_bytes >= LONG_TO_HASH_BYTES);
-    let has_work = kinds.any(|&kind| !store.items(kind as u8).is_empty());
+    let has_work = (0..=Kind::LAST as u8)
+        .filter(|&kind| kind != Kind::InputHash as u8 || input_bytes >= LONG_TO_HASH_BYTES)
+        .any(|kind| !store.items(kind).is_empty());
     if is_final(error) || !has_work {
         remove(store, observer);
         return;
