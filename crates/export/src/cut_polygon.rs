@@ -25,7 +25,7 @@ struct Corner {
 
 /// The rings of a polygon of the package.
 pub(crate) fn rings_of(polygon: &Polygon, places: &Places<'_>) -> Rings {
-    let frame = &places.manifest().frame;
+    let frame = &places.manifest.frame;
     let position = |point: &LatticePoint| frame.position_m(*point);
     polygon.rings().map(|ring| ring.points().iter().map(position).collect()).collect()
 }
@@ -91,7 +91,7 @@ struct Cutting<'a> {
 impl Cutting<'_> {
     /// The corners of a ring with those between where its lines are bent in degrees. Longitudes run on from `first`, the polygon's first corner.
     fn corners(&self, ring: &[[f64; 2]], first: &mut Option<[f64; 2]>) -> Option<Vec<Corner>> {
-        let coordinates = &self.places.manifest().coordinates;
+        let coordinates = &self.places.manifest.coordinates;
         let after = |at_m: [f64; 2], before: Option<[f64; 2]>| {
             let deg = coordinates.wgs84_from_working(at_m);
             let at_deg = match before {
@@ -157,7 +157,7 @@ impl Cutting<'_> {
 
     /// The position of a place in degrees from the middle of the bounds. Longitudes of a package may run on past 180.
     fn position_m(&self, [east, lat]: [f64; 2]) -> Option<[f64; 2]> {
-        let manifest = self.places.manifest();
+        let manifest = self.places.manifest;
         let lon = self.bounds.middle()[0] + east;
         let data = manifest.whole_data_bounds();
         let places = [0.0, 360.0, -360.0, 720.0, -720.0]

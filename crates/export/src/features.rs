@@ -4,7 +4,7 @@ use std::path::Path;
 
 use corniche_areas::AreaObject;
 use corniche_geom::TileId;
-use corniche_store::{SortRecord, Sorter};
+use corniche_store::SortRecord;
 use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage};
 
@@ -13,8 +13,7 @@ use crate::{
     feature_request::{Coordinates, FeatureRequest},
     places::Places,
     read,
-    scratch::FileScratch,
-    sorted_pieces::SortedPieces,
+    sorted_pieces::{FileScratch, SortedPieces},
     vector::{Field, Layer, Record, ShapeKind, VectorFile, VectorFormat},
 };
 
@@ -109,7 +108,7 @@ impl<'a, C> FeatureSource<'a, C> {
         let crs = match (self.request.format, self.request.coordinates) {
             // GeoJSON names systems by their codes, or not at all: there is none for both parts of a compound one.
             (VectorFormat::GeoJson, Coordinates::Epsg(code)) => format!("EPSG:{code}"),
-            _ => places.crs().to_owned(),
+            _ => places.wkt.clone(),
         };
         let of_package = [
             ("GENERATOR", manifest.generator.clone()),
@@ -145,13 +144,11 @@ pub(crate) fn write_features<F: Features>(
     observer: &dyn Observer,
 ) -> Result<(), FeaturesError> {
     let FeatureSource { package, request, level, .. } = source;
-    let folder = corniche_store::folder_of(path);
-    let scratch = FileScratch::create(folder)
-        .map_err(|source| FeaturesError::Sort { folder: folder.to_path_buf(), source })?;
+    let scratch = FileScratch::create(corniche_store::folder_of(path))?;
     let tiles = read::tiles(package, *level, request.bounds.as_ref())?;
-    let sorter = (Sorter::new(&scratch, request.memory_bytes), folder);
+    let sorting = (&scratch, request.memory_bytes);
     let pieces =
-        SortedPieces::read(&tiles, sorter, observer, |tile| features.pieces(source, tile))?;
+        SortedPieces::read(&tiles, sorting, observer, |tile| features.pieces(source, tile))?;
     let layer = source.layer(features.name(), F::SHAPES, features.about(source));
     let mut file = VectorFile::create(path, request.format, layer)?;
     pieces.for_each(observer, F::object, |pieces| {

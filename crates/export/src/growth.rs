@@ -5,7 +5,6 @@ use std::path::Path;
 use corniche_areas::AreaObject;
 use corniche_geom::LatticeBounds;
 use corniche_roads::FunctionalRoadClass;
-use corniche_store::Sorter;
 use corniche_tileset::{FilePackage, Manifest, tile_of_order};
 use corniche_work::{Observer, Stage};
 
@@ -17,8 +16,7 @@ use crate::{
     piece::{Piece, Vertex},
     places::Places,
     read,
-    scratch::FileScratch,
-    sorted_pieces::SortedPieces,
+    sorted_pieces::{FileScratch, SortedPieces},
 };
 
 /// What laying one way on the terrain costs.
@@ -51,12 +49,10 @@ pub fn growth_by_way<E: From<FeaturesError>>(
 ) -> Result<(), E> {
     let manifest = package.manifest();
     SelectionError::check_roads(package).map_err(FeaturesError::from)?;
-    let sort = |source| FeaturesError::Sort { folder: folder.to_path_buf(), source };
-    let scratch = FileScratch::create(folder).map_err(sort)?;
+    let scratch = FileScratch::create(folder)?;
     let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
     let tiles = package.tile_ids().map_err(FeaturesError::from)?;
-    let sorter = (Sorter::new(&scratch, memory_bytes), folder);
-    let pieces = SortedPieces::read(&tiles, sorter, observer, |id| {
+    let pieces = SortedPieces::read(&tiles, (&scratch, memory_bytes), observer, |id| {
         Ok(read::pieces(package, id, &classes)?)
     })?;
     let places = Places::new(manifest, Coordinates::Package).map_err(FeaturesError::from)?;
@@ -94,7 +90,7 @@ fn growth_of(
         }
     }
     let joined = lines(&of_finest);
-    let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
+    let distance_m = places.metric();
     let profiled: Vec<Profiled<'_>> =
         joined.iter().map(|line| Profiled::of(line, &distance_m)).collect();
     let measures = Measures::of(&profiled);

@@ -66,7 +66,6 @@ mod relief_map;
 mod road_query;
 mod roads;
 mod route;
-mod scratch;
 mod sorted_pieces;
 mod span_facts;
 mod surfaces;
@@ -92,10 +91,10 @@ pub use geotiff::{
 pub use growth::{WayGrowth, growth_by_way};
 pub use heights::{Elevation, with_vertical_crs};
 pub use lines::{LinesSummary, export_lines};
+pub use measures::ProfileGrades;
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
 pub use profile::{
-    Course, CourseLeg, Profile, ProfileGrades, ProfileLeg, ProfilePart, ProfilePoint, profile,
-    profile_of_course,
+    Course, CourseLeg, Profile, ProfileLeg, ProfilePart, ProfilePoint, profile, profile_of_course,
 };
 pub use quantized_mesh::{
     Availability, PlannedLevel, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest,

@@ -9,19 +9,20 @@ use crate::{
     cut::{cut_at_antimeridian, cut_polygon_at_antimeridian},
     error::CoordinatesError,
     feature_request::Coordinates,
+    measures::distances_m,
     piece::Vertex,
 };
 
 /// Carries places on the lattice to the coordinates of features.
 pub(crate) struct Places<'a> {
-    manifest: &'a Manifest,
+    pub(crate) manifest: &'a Manifest,
     target: Target,
     /// Where the package's table of longitudes and latitudes ends: there is a network beyond it, if the package was cut.
     beyond: Option<Box<DemProjection>>,
-    /// WKT2 of the features' CRS.
-    wkt: String,
+    /// The CRS of features, as WKT2 or as a code.
+    pub(crate) wkt: String,
     /// What their heights are, in words.
-    heights: String,
+    pub(crate) heights: String,
 }
 
 enum Target {
@@ -93,16 +94,6 @@ impl<'a> Places<'a> {
         Ok(Self { manifest, target, beyond, wkt, heights })
     }
 
-    /// The CRS of features, as WKT2 or as a code.
-    pub(crate) fn crs(&self) -> &str {
-        &self.wkt
-    }
-
-    /// What heights of features are, in words.
-    pub(crate) fn heights(&self) -> &str {
-        &self.heights
-    }
-
     /// Longitude and latitude of a place on the lattice, without PROJ: to the centimetre, and smooth.
     pub(crate) fn wgs84(&self, at: [f64; 2]) -> [f64; 2] {
         let Manifest { frame, coordinates, .. } = self.manifest;
@@ -117,17 +108,19 @@ impl<'a> Places<'a> {
         known_line_length_m(ends_m, ends_m.map(degrees), &degrees)
     }
 
+    /// The true distance in plan between two places on the lattice, as a function.
+    pub(crate) fn metric(&self) -> impl Fn([f64; 2], [f64; 2]) -> f64 + '_ {
+        |from, to| self.distance_m(from, to)
+    }
+
+    /// How far along a line on the lattice each of its points is.
+    pub(crate) fn distances_m(&self, points: impl Iterator<Item = LatticePoint>) -> Vec<f64> {
+        distances_m(points.map(LatticePoint::in_steps), &self.metric())
+    }
+
     /// The true length in plan of a line on the lattice.
-    pub(crate) fn length_m(&self, mut points: impl Iterator<Item = LatticePoint>) -> f64 {
-        let Some(first) = points.next() else { return 0.0 };
-        let mut before = first.in_steps();
-        let mut length_m = 0.0;
-        for point in points {
-            let at = point.in_steps();
-            length_m += self.distance_m(before, at);
-            before = at;
-        }
-        length_m
+    pub(crate) fn length_m(&self, points: impl Iterator<Item = LatticePoint>) -> f64 {
+        self.distances_m(points).last().copied().unwrap_or_default()
     }
 
     /// Longitude and latitude of a place in working metres, also beyond the package's table.
@@ -291,10 +284,5 @@ impl<'a> Places<'a> {
     /// Whether straight lines of the features' coordinates are straight in degrees.
     pub(crate) fn are_degrees(&self) -> bool {
         matches!(self.target, Target::Wgs84 { .. })
-    }
-
-    /// The package of the places.
-    pub(crate) fn manifest(&self) -> &'a Manifest {
-        self.manifest
     }
 }

@@ -20,13 +20,12 @@ type Block = Rc<[f32]>;
 
 /// The surface over the nodes of a package's grid, as its elevation files have them: bilinear in each cell.
 pub(crate) struct DemNodes<'a> {
-    elevation: Elevation<'a>,
     reader: Reader<'a>,
     /// The surface of the files' own samples, which may be others than the nodes.
     samples: SampleSurface<'a>,
-    frame: GridFrame,
+    pub(crate) frame: GridFrame,
     /// Lattice steps from node to node, east and north.
-    steps: [f64; 2],
+    pub(crate) steps: [f64; 2],
     kept: HashMap<[i64; 2], Block>,
     /// The blocks that are kept, the oldest first.
     order: VecDeque<[i64; 2]>,
@@ -35,7 +34,6 @@ pub(crate) struct DemNodes<'a> {
 impl<'a> DemNodes<'a> {
     pub(crate) fn new(elevation: Elevation<'a>, frame: &GridFrame) -> Self {
         Self {
-            elevation,
             reader: elevation.dem.reader(elevation.plan),
             samples: elevation.dem.sample_surface(elevation.plan),
             frame: *frame,
@@ -43,16 +41,6 @@ impl<'a> DemNodes<'a> {
             kept: HashMap::new(),
             order: VecDeque::new(),
         }
-    }
-
-    /// The elevation files.
-    pub(crate) fn elevation(&self) -> Elevation<'a> {
-        self.elevation
-    }
-
-    /// Lattice steps from node to node, east and north.
-    pub(crate) fn steps(&self) -> [f64; 2] {
-        self.steps
     }
 
     /// The block in which a place lies.

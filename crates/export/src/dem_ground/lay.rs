@@ -23,6 +23,15 @@ pub(crate) struct DemLine {
     pub(crate) tolerance_m: Option<f64>,
     /// Whether its first vertex is that of the whole line, and its last the last.
     pub(crate) has_end: [bool; 2],
+    /// Whether a deck carries it instead.
+    pub(crate) on_deck: bool,
+}
+
+impl DemLine {
+    fn from(first: Vertex, is_first: bool) -> Self {
+        let has_end = [is_first, false];
+        Self { vertices: vec![first], tolerance_m: None, has_end, on_deck: false }
+    }
 }
 
 /// Lays a line on the ground: of its vertices, those that are source points, and its ends, tell where it runs. Where there is no ground it has a gap.
@@ -38,7 +47,7 @@ pub(crate) fn lay(
     let mut laid = Laid::default();
     for (number, pair) in points.array_windows::<2>().enumerate() {
         let [from, to] = *pair;
-        let places = places_between(from.at, to.at, nodes.steps());
+        let places = places_between(from.at, to.at, nodes.steps);
         let mut before = laid.begin(nodes, from, number == 0)?;
         let ends = places.len() - 1;
         for (index, [middle, end]) in places.iter().enumerate() {
@@ -85,11 +94,7 @@ impl Laid {
     ) -> Result<Option<f64>, ElevationError> {
         let height_m = nodes.height_m(from.at)?;
         if let Some(z_m) = height_m.filter(|_| !self.is_open) {
-            self.lines.push(DemLine {
-                vertices: vec![Vertex { z_m, ..from }],
-                tolerance_m: None,
-                has_end: [is_first, false],
-            });
+            self.lines.push(DemLine::from(Vertex { z_m, ..from }, is_first));
         }
         self.is_open = height_m.is_some();
         Ok(height_m)
@@ -104,9 +109,7 @@ impl Laid {
     /// There is no ground somewhere before a place, which begins a new line if it has ground itself.
     fn interrupt(&mut self, next: Option<Vertex>) {
         self.is_open = next.is_some();
-        let line =
-            |vertex| DemLine { vertices: vec![vertex], tolerance_m: None, has_end: [false; 2] };
-        self.lines.extend(next.map(line));
+        self.lines.extend(next.map(|vertex| DemLine::from(vertex, false)));
     }
 }
 
@@ -126,7 +129,7 @@ pub(crate) fn off_dem_m(
             Vertex { at, z_m: from.z_m + share * (to.z_m - from.z_m), is_source: false }
         };
         divided.extend(
-            places_between(from.at, to.at, nodes.steps()).into_flattened().into_iter().map(on_line),
+            places_between(from.at, to.at, nodes.steps).into_flattened().into_iter().map(on_line),
         );
     }
     nodes.farthest_m(&divided)

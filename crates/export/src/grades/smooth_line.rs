@@ -1,7 +1,7 @@
 //! A smooth line, and what is measured of a part of it.
 
 use super::smoothing::{MOST_SPACING_M, Smoothing};
-use crate::measures::{between, steepest};
+use crate::measures::{ProfileGrades, between};
 
 /// The steepest grade of a smooth line is taken over this length, metres.
 pub(crate) const GRADE_LENGTH_M: f64 = 50.0;
@@ -23,17 +23,6 @@ pub(crate) struct Station {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct SmoothLine {
     pub(crate) stations: Vec<Station>,
-}
-
-/// What is measured of smooth lines.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct SmoothGrades {
-    /// Metres upwards, all of them together.
-    pub(crate) ascent_m: f64,
-    /// The same downwards.
-    pub(crate) descent_m: f64,
-    /// Steepest grade over [`GRADE_LENGTH_M`] or more, rise over run without sign; `None` where no line is as long.
-    pub(crate) steepest: Option<f64>,
 }
 
 impl SmoothLine {
@@ -119,7 +108,7 @@ impl SmoothLine {
     }
 
     /// Its distances and heights.
-    pub(crate) fn profile(&self) -> Vec<[f64; 2]> {
+    fn profile(&self) -> Vec<[f64; 2]> {
         self.stations.iter().map(|station| [station.along_m, station.height_m]).collect()
     }
 
@@ -157,21 +146,9 @@ impl SmoothLine {
     }
 }
 
-impl SmoothGrades {
-    /// The measures of some lines together.
-    pub(crate) fn of(lines: &[SmoothLine]) -> Self {
-        let mut all = Self::default();
-        for line in lines {
-            for [from, to] in line.stations.array_windows::<2>() {
-                let rise_m = to.height_m - from.height_m;
-                all.ascent_m += rise_m.max(0.0);
-                all.descent_m += (-rise_m).max(0.0);
-            }
-            let grades = [all.steepest, steepest(&line.profile(), GRADE_LENGTH_M)];
-            all.steepest = grades.into_iter().flatten().reduce(f64::max);
-        }
-        all
-    }
+/// What is measured of smooth lines, over [`GRADE_LENGTH_M`] or more of each.
+pub(crate) fn grades_of(lines: &[SmoothLine]) -> ProfileGrades {
+    ProfileGrades::of(lines.iter().map(SmoothLine::profile), GRADE_LENGTH_M)
 }
 
 impl Station {

@@ -34,11 +34,11 @@ struct ChainPart {
 
 /// Decks by the chains of a network.
 pub(crate) struct SpanDecks {
-    decks: Decks,
+    pub(crate) decks: Decks,
     parts: BTreeMap<ChainNumber, Vec<ChainPart>>,
     /// The nodes of the network at which its bridges and tunnels are carried, with their heights.
-    supports: Vec<(NodeNumber, f64)>,
-    facts: SpanFacts,
+    pub(crate) supports: Vec<(NodeNumber, f64)>,
+    pub(crate) facts: SpanFacts,
 }
 
 /// A stretch of a road: its chain, where it begins and ends along the road, and where these places are along the chain.
@@ -63,7 +63,7 @@ impl SpanDecks {
         let network = own.0;
         let of_spans = network.of_spans();
         let of_spans_chains = Chains::of(of_spans, Breaks::JunctionsAndStructures);
-        let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
+        let distance_m = places.metric();
         let spans = Spans::find(of_spans, &of_spans_chains, &distance_m);
         let crossings = crossings(of_spans, &of_spans_chains, &distance_m);
         let wanted: Vec<[f64; 2]> = Decks::places(&spans, &crossings).collect();
@@ -115,21 +115,6 @@ impl SpanDecks {
         let supports = supports_of(own, (&of_spans_chains, &lengths), &decks, &parts);
         let facts = SpanFacts::of(&decks, &told);
         Ok(Self { decks, parts, supports, facts })
-    }
-
-    /// The decks in the network in which they were solved.
-    pub(crate) fn decks(&self) -> &Decks {
-        &self.decks
-    }
-
-    /// The nodes of the network at which its bridges and tunnels are carried, with their heights.
-    pub(crate) fn supports(&self) -> &[(NodeNumber, f64)] {
-        &self.supports
-    }
-
-    /// What is told of them.
-    pub(crate) fn facts(&self) -> &SpanFacts {
-        &self.facts
     }
 
     /// The height at a distance along a chain, as if there were no ground; `None` on the ground, and where it is not known.

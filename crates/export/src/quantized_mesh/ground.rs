@@ -4,14 +4,13 @@ use std::sync::Arc;
 
 use corniche_geom::{Bounds, LatticeBounds, LatticePoint, Seam, TileId};
 use corniche_tileset::{FilePackage, Manifest, Sections};
-use corniche_tin::{Placement, Surface};
 
 use super::{
     node_heights::NodeHeights,
     surfaces::{SurfaceTile, Surfaces},
     tiling::Nodes,
 };
-use crate::{error::QuantizedMeshError, places::Places};
+use crate::{error::QuantizedMeshError, places::Places, read};
 
 /// How far beside a line edges are looked for that may cross it, as a share of its length: meridians and parallels bend in the package's CRS.
 const ROOM_BESIDE_LINES: f64 = 0.01;
@@ -284,11 +283,11 @@ impl<'a> Ground<'a> {
     }
 
     fn read(&self, id: TileId) -> Result<Option<SurfaceTile>, QuantizedMeshError> {
-        let Manifest { frame, vertical, coordinates, .. } = self.package.manifest();
+        let manifest = self.package.manifest();
+        let Manifest { frame, coordinates, .. } = manifest;
         let payload = self.package.payload(id, Sections::TERRAIN)?;
         let Some(terrain) = payload.and_then(|payload| payload.terrain) else { return Ok(None) };
-        let placement = Placement::of_tile(frame, id, vertical.quantum_m);
-        let surface = Surface::new(&terrain.tin, placement);
+        let surface = read::surface_of(manifest, id, &terrain);
         let points = surface.points().iter().map(|point| point.in_steps());
         let positions: Vec<[f64; 2]> =
             points.map(|steps| frame.position_of_fraction_m(steps)).collect();

@@ -111,8 +111,8 @@ fn heights_in_words(
     let places = Places::new(manifest, coordinates)?;
     let datum = &manifest.vertical.datum;
     Ok(match coordinates {
-        Coordinates::Wgs84 => format!("{} (in the package: {datum})", places.heights()),
-        _ => places.heights().to_owned(),
+        Coordinates::Wgs84 => format!("{} (in the package: {datum})", places.heights),
+        _ => places.heights.clone(),
     })
 }
 

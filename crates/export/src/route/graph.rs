@@ -179,12 +179,12 @@ impl<'a> RoadGraph<'a> {
 
     /// See [`corniche_tileset::Manifest::covered_text`].
     pub(crate) fn covered_text(&self, place_deg: [f64; 2]) -> String {
-        self.places.manifest().covered_text(place_deg)
+        self.places.manifest.covered_text(place_deg)
     }
 
     /// The places on roads that are meant nearest to a place, and those that are at most so much farther; the nearest first.
     pub(crate) fn near(&self, place_deg: [f64; 2], beside_m: f64) -> Vec<PlaceOnLink> {
-        let manifest = self.places.manifest();
+        let manifest = self.places.manifest;
         let Some(position_m) = manifest.coordinates.working_from_wgs84(place_deg) else {
             return Vec::new();
         };

@@ -3,7 +3,6 @@
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, slab_thickness_m};
 use corniche_tileset::{Manifest, Terrain};
-use corniche_tin::{Placement, Surface};
 
 use super::{
     cut::{self, Ground},
@@ -12,7 +11,7 @@ use super::{
     ribbon::Ribbon,
     slab::{Slab, SlabLabels},
 };
-use crate::error::SurfaceError;
+use crate::{error::SurfaceError, read::surface_of};
 
 /// What a triangle is a surface of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -45,8 +44,7 @@ impl Divided {
         lines: Option<&TileLines<'_>>,
     ) -> Result<Option<Self>, SurfaceError> {
         let frame = &manifest.frame;
-        let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
-        let surface = Surface::new(&terrain.tin, placement);
+        let surface = surface_of(manifest, id, terrain);
         if surface.triangles().is_empty() {
             return Ok(None);
         }

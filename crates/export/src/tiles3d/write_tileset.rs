@@ -88,7 +88,7 @@ pub fn export_tiles3d(
 ) -> Result<Tiles3dSummary, Tiles3dError> {
     let manifest = package.manifest();
     let finest = crate::read::level(package, request.finest_level)?;
-    let heights = Places::new(manifest, request.coordinates)?.heights().to_owned();
+    let heights = Places::new(manifest, request.coordinates)?.heights;
     let mut ids = package.tile_ids()?;
     ids.retain(|id| id.z() <= finest);
     let failed = |source| Tiles3dError::Write { source };
