@@ -127,7 +127,7 @@ impl DegreeBounds {
 /// What of a line lies between limits, low and high along both axes, as shares of it; nothing where that is one point.
 ///
 /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
-fn clip(from: [f64; 2], to: [f64; 2], limits: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+pub(crate) fn clip(from: [f64; 2], to: [f64; 2], limits: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
     for (axis, [low, high]) in limits.into_iter().enumerate() {
         let along = to[axis] - from[axis];

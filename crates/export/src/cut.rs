@@ -116,17 +116,10 @@ fn shares_inside(
 
 /// The vertex at a share of the way from one to the next; at its ends these themselves.
 fn between(from: Vertex, to: Vertex, share: f64) -> Vertex {
-    if share <= 0.0 {
-        return from;
-    }
-    if share >= 1.0 {
-        return to;
-    }
-    let mix = |a: f64, b: f64| a + share * (b - a);
-    Vertex {
-        at: [mix(from.at[0], to.at[0]), mix(from.at[1], to.at[1])],
-        z_m: mix(from.z_m, to.z_m),
-        is_source: false,
+    match share {
+        ..=0.0 => from,
+        1.0.. => to,
+        _ => from.towards(to, share),
     }
 }
 

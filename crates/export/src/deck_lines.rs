@@ -94,7 +94,7 @@ fn on_deck(
         while let (Some(from), Some(bend)) = (before, bends.next_if(|bend| bend.along_m < at_m)) {
             let share = (bend.along_m - from.along_m) / (at_m - from.along_m);
             if share > 0.0 {
-                let ground = between(from.ground, *vertex, share);
+                let ground = from.ground.towards(*vertex, share);
                 places.push(OverGround { along_m: bend.along_m, ground, deck_m: bend.ground_m });
             }
         }
@@ -110,7 +110,7 @@ fn on_deck(
         {
             let share = from_over_m / (from_over_m - over_m);
             let along_m = from.along_m + share * (place.along_m - from.along_m);
-            all.push((along_m, between(from.ground, place.ground, share)));
+            all.push((along_m, from.ground.towards(place.ground, share)));
         }
         let z_m = if over_m > 0.0 { place.deck_m } else { place.ground.z_m };
         all.push((place.along_m, Vertex { z_m, ..place.ground }));
@@ -126,13 +126,6 @@ struct OverGround {
     along_m: f64,
     ground: Vertex,
     deck_m: f64,
-}
-
-/// A place on the ground between two others, which is no point of the way.
-fn between(from: Vertex, to: Vertex, share: f64) -> Vertex {
-    let mix = |from: f64, to: f64| from + share * (to - from);
-    let at = [0, 1].map(|axis| mix(from.at[axis], to.at[axis]));
-    Vertex { at, z_m: mix(from.z_m, to.z_m), is_source: false }
 }
 
 /// The vertices without those that are no points of the way, and at which the line is straight.

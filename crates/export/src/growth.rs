@@ -95,7 +95,8 @@ fn growth_of(
         joined.iter().map(|line| Profiled::of(line, &distance_m)).collect();
     let measures = Measures::of(&profiled);
     let joins: usize = joined.iter().map(|line| line.joins.len()).sum();
-    let cuts = cut_ends(&of_finest, clip(manifest)).saturating_sub(2 * joins as u64);
+    let clip = manifest.clip.as_ref().map(|clip| manifest.frame.lattice_bounds(clip.nodes));
+    let cuts = cut_ends(&of_finest, clip).saturating_sub(2 * joins as u64);
     Ok(Some(WayGrowth {
         way_id,
         class,
@@ -126,12 +127,6 @@ fn cut_ends(pieces: &[Piece], clip: Option<LatticeBounds>) -> u64 {
             + u64::from(is_cut(piece.vertices.last(), last))
     };
     pieces.iter().map(ends).sum()
-}
-
-/// The bounds that were asked for, on the lattice: roads of the finest level end there.
-fn clip(manifest: &Manifest) -> Option<LatticeBounds> {
-    let [min, max] = manifest.clip.as_ref()?.nodes.map(|node| manifest.frame.lattice_of_node(node));
-    Some(LatticeBounds { min, max })
 }
 
 #[cfg(test)]

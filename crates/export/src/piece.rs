@@ -17,6 +17,15 @@ pub(crate) struct Vertex {
     pub(crate) is_source: bool,
 }
 
+impl Vertex {
+    /// The place on the way to another vertex.
+    pub(crate) fn towards(self, to: Self, share: f64) -> Self {
+        let mix = |from: f64, to: f64| from + share * (to - from);
+        let at = [0, 1].map(|axis| mix(self.at[axis], to.at[axis]));
+        Self { at, z_m: mix(self.z_m, to.z_m), is_source: false }
+    }
+}
+
 /// Where a piece comes from; pieces sort by it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct PieceKey {

@@ -64,37 +64,21 @@ pub(crate) const COLORS: PixelKind = PixelKind {
     no_data: None,
 };
 
-/// A type of the pixels of a raster.
-pub(crate) trait Pixel: GdalType + Copy + Send {
-    fn bytes(self) -> [u8; 8];
-}
+/// What a pixel is.
+pub(crate) trait Pixel: GdalType + bytemuck::Pod + Send {}
 
-/// A type of the pixels of a raster of heights.
+impl Pixel for u8 {}
+impl Pixel for f32 {}
+impl Pixel for f64 {}
+
+/// A height.
 pub(crate) trait Number: Pixel {
     fn of(value: f64) -> Self;
-}
-
-impl Pixel for u8 {
-    fn bytes(self) -> [u8; 8] {
-        u64::from(self).to_le_bytes()
-    }
-}
-
-impl Pixel for f32 {
-    fn bytes(self) -> [u8; 8] {
-        u64::from(self.to_bits()).to_le_bytes()
-    }
 }
 
 impl Number for f32 {
     fn of(value: f64) -> Self {
         value as Self
-    }
-}
-
-impl Pixel for f64 {
-    fn bytes(self) -> [u8; 8] {
-        self.to_le_bytes()
     }
 }
 
@@ -252,8 +236,7 @@ fn read_again<T: Pixel>(
 fn checksum<T: Pixel>(block: &[T], size: RasterSize, place: [usize; 2]) -> u32 {
     let (mut crc, [columns, rows]) = (Crc::new(), size.block_size(place));
     for row in block.chunks(BLOCK).take(rows) {
-        let bytes: Vec<u8> = row[..columns].iter().flat_map(|number| number.bytes()).collect();
-        crc.update(&bytes);
+        crc.update(bytemuck::cast_slice(&row[..columns]));
     }
     crc.sum()
 }

@@ -83,7 +83,7 @@ impl MeshWriter for ObjWriter {
             }
             text.push('\n');
         }
-        lines.push(text.as_bytes())
+        lines.write_all(text.as_bytes())
     }
 
     fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()> {

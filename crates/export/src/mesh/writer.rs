@@ -73,22 +73,23 @@ impl Spill {
         Ok(Self { file: BufWriter::new(file), length: 0 })
     }
 
-    /// How many bytes there are.
-    pub(crate) fn length(&self) -> u64 {
-        self.length
-    }
-
-    /// Appends bytes.
-    pub(crate) fn push(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.length += bytes.len() as u64;
-        self.file.write_all(bytes)
-    }
-
     /// Copies all of it.
     pub(crate) fn copy_to(self, into: &mut impl Write) -> io::Result<()> {
         let mut file = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
         file.seek(SeekFrom::Start(0))?;
         let copied = io::copy(&mut file, into)?;
         if copied == self.length { Ok(()) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
+    }
+}
+
+impl Write for Spill {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.length += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
     }
 }

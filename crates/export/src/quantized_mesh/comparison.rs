@@ -11,7 +11,10 @@ use super::{
     raster::{Sample, nearest_steps},
     tiling::{LAST_STEP, Square, is_in_tile},
 };
-use crate::globe::{between, dot, geocentric_m, unit};
+use crate::{
+    bounds::clip,
+    globe::{between, dot, geocentric_m, unit},
+};
 
 /// A place of the ground, rounded to a 2²⁴th of the tile: there are many.
 #[derive(Debug, Clone, Copy)]
@@ -302,20 +305,7 @@ fn along<const N: usize>(from: [f64; N], to: [f64; N], share: f64) -> [f64; N] {
 ///
 /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
 fn share_at_entry([from, to]: [[f64; 2]; 2]) -> Option<f64> {
-    let (mut begin, mut end) = (0.0_f64, 1.0_f64);
-    for axis in 0..2 {
-        let way = to[axis] - from[axis];
-        let shares = [0.0, f64::from(LAST_STEP)].map(|border| (border - from[axis]) / way);
-        if way.abs() < f64::MIN_POSITIVE {
-            if !(0.0..=f64::from(LAST_STEP)).contains(&from[axis]) {
-                return None;
-            }
-        } else {
-            begin = begin.max(shares[0].min(shares[1]));
-            end = end.min(shares[0].max(shares[1]));
-        }
-    }
-    (begin < end).then_some(begin)
+    clip(from, to, [[0.0, f64::from(LAST_STEP)]; 2]).map(|[begin, _]| begin)
 }
 
 /// The direction upwards at a position near the ellipsoid.

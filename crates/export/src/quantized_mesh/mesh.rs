@@ -12,7 +12,7 @@ use super::{
     raster::{Sample, TileRaster},
     tiling::LAST_STEP,
 };
-use crate::globe::{between, dot, geocentric_m};
+use crate::globe::{between, dot, geocentric_m, range_of};
 
 /// The part of a level's error that the TIN may have at nodes. The rest is for the globe, which its plane only approaches.
 const SHARE_OF_TIN: f64 = 0.7;
@@ -165,11 +165,7 @@ impl Mesh {
     /// Rounds heights, as they are written.
     pub(crate) fn finish(&mut self) {
         let heights_m = self.triangles.vertices().map(|vertex| vertex.data().place[2]);
-        let range_m = heights_m
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height_m| {
-                [low.min(height_m), high.max(height_m)]
-            });
-        self.range_m = range_m.map(|height_m| height_m as f32);
+        self.range_m = range_of(heights_m).map(|height_m| height_m as f32);
         let vertices: Vec<FixedVertexHandle> = self.triangles.fixed_vertices().collect();
         for handle in vertices {
             let vertex = self.triangles.vertex_data_mut(handle);

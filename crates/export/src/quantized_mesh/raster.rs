@@ -312,14 +312,8 @@ impl TileRaster {
         level: Looked,
         ground: &Ground<'_>,
     ) -> Result<Vec<u16>, QuantizedMeshError> {
-        let [[west, south], [east, north]] = self.nodes.corners_deg(self.tile);
-        let ends = match side {
-            Side::West => [[west, south], [west, north]],
-            Side::South => [[west, south], [east, south]],
-            Side::East => [[east, south], [east, north]],
-            Side::North => [[west, north], [east, north]],
-        };
-        // On both sides: where the ground ends, one of them has none.
+        let corners = self.nodes.corners_deg(self.tile);
+        let ends = corners.map(|end| side.at(corners[side.far][side.across], end[1 - side.across]));
         let to_steps = |share: f64| {
             let step = share * f64::from(LAST_STEP);
             [step.floor() as u16, step.ceil() as u16]
@@ -343,17 +337,11 @@ impl TileRaster {
     fn on_side(&self, side: Side, step: u16) -> ([u16; 2], [usize; 2]) {
         let last = self.side() - 1;
         let cell = self.nodes.cell_of(step) as usize;
-        let (steps, node): (_, fn(usize, usize) -> [usize; 2]) = match side {
-            Side::West => ([0, step], |k, last| [0, last - k]),
-            Side::South => ([step, 0], |k, last| [k, last]),
-            Side::East => ([LAST_STEP, step], |k, last| [last, last - k]),
-            Side::North => ([step, LAST_STEP], |k, _| [k, 0]),
-        };
         let nodes = [cell, cell + 1].map(|k| {
-            let [column, row] = node(k, last);
-            self.at(column, row)
+            let [column, from_south] = side.at(side.far * last, k);
+            self.at(column, last - from_south)
         });
-        (steps, nodes)
+        (side.at(side.far as u16 * LAST_STEP, step), nodes)
     }
 
     /// The north-western node of the cell that holds u and v.
@@ -363,17 +351,28 @@ impl TileRaster {
     }
 }
 
-/// The borders of a tile.
+/// A side of a tile.
 #[derive(Debug, Clone, Copy)]
-enum Side {
-    West,
-    South,
-    East,
-    North,
+struct Side {
+    /// The axis across it: 0 from west to east, 1 from south to north.
+    across: usize,
+    /// 0 at the beginning of this axis, 1 at its end.
+    far: usize,
 }
 
 impl Side {
-    const ALL: [Self; 4] = [Self::West, Self::South, Self::East, Self::North];
+    /// West, south, east and north.
+    const ALL: [Self; 4] = [
+        Self { across: 0, far: 0 },
+        Self { across: 1, far: 0 },
+        Self { across: 0, far: 1 },
+        Self { across: 1, far: 1 },
+    ];
+
+    /// A place by where it is across the side, and along it.
+    fn at<T>(self, across: T, along: T) -> [T; 2] {
+        if self.across == 0 { [across, along] } else { [along, across] }
+    }
 }
 
 /// The package's level that is looked at.

@@ -68,17 +68,15 @@ pub(crate) fn cut(ground: &Ground<'_>, ribbons: &[Ribbon]) -> Result<GroundMesh,
         tile.min.u + (tile.max.u - tile.min.u) / 2,
         tile.min.v + (tile.max.v - tile.min.v) / 2,
     );
-    let labels = LabelIndex::new(ribbons, tile);
+    let labels = LabelIndex::new(ribbons, tile, middle);
     let outlines = Outlines::within(ribbons, tile);
     let mut is_touched = vec![false; surface.triangles().len()];
     for bounds in outlines.bounds() {
         surface.visit_triangles_near(bounds, |triangle| {
-            let [a, b, c] =
+            let corners =
                 surface.triangles()[triangle as usize].map(|v| surface.points()[v as usize]);
-            let own = LatticeBounds { min: a, max: a }
-                .union(&LatticeBounds { min: b, max: b })
-                .union(&LatticeBounds { min: c, max: c });
-            is_touched[triangle as usize] |= own.intersects(&bounds);
+            let own = LatticeBounds::of(&corners);
+            is_touched[triangle as usize] |= own.is_some_and(|own| own.intersects(&bounds));
         });
     }
     let mut mesh = GroundMesh::new(middle);
@@ -126,12 +124,9 @@ impl Outlines {
 
     /// What they may come near.
     fn bounds(&self) -> impl Iterator<Item = LatticeBounds> {
-        let of_point = |p: LatticePoint| LatticeBounds { min: p, max: p };
-        let of_segments = self
-            .segments
-            .iter()
-            .map(move |[one, other]| of_point(*one).union(&of_point(*other)).expanded(MOVED_STEPS));
-        of_segments.chain(self.points.iter().map(move |point| of_point(*point)))
+        let of_segments = self.segments.iter().filter_map(|ends| LatticeBounds::of(ends));
+        let of_points = self.points.iter().map(|&point| LatticeBounds { min: point, max: point });
+        of_segments.map(|bounds| bounds.expanded(MOVED_STEPS)).chain(of_points)
     }
 }
 

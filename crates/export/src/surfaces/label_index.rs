@@ -18,11 +18,7 @@ pub(crate) struct LabelIndex<'a> {
 }
 
 impl<'a> LabelIndex<'a> {
-    pub(crate) fn new(ribbons: &'a [Ribbon], tile: &LatticeBounds) -> Self {
-        let middle = LatticePoint::new(
-            tile.min.u + (tile.max.u - tile.min.u) / 2,
-            tile.min.v + (tile.max.v - tile.min.v) / 2,
-        );
+    pub(crate) fn new(ribbons: &'a [Ribbon], tile: &LatticeBounds, middle: LatticePoint) -> Self {
         let mut index = Self {
             parts: Vec::new(),
             squares: vec![Vec::new(); SQUARES * SQUARES],
@@ -38,10 +34,7 @@ impl<'a> LabelIndex<'a> {
     }
 
     fn add(&mut self, label: u32, part: &'a [LatticePoint]) {
-        let of_point = |p: &LatticePoint| LatticeBounds { min: *p, max: *p };
-        let Some(own) = part.iter().map(of_point).reduce(|one, other| one.union(&other)) else {
-            return;
-        };
+        let Some(own) = LatticeBounds::of(part) else { return };
         if !own.intersects(&self.bounds) {
             return;
         }

@@ -8,14 +8,14 @@ use corniche_styles::Rgb;
 use corniche_tileset::{FilePackage, Manifest, Sections, TilePayload};
 
 use super::{
-    parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent, y_up},
+    parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent},
     placed::{PlacedTile, PlacedVertex, Placing, TileBox},
     skirt::Skirt,
     tiles3d_request::{TileRoads, Tiles3dRequest},
 };
 use crate::{
     error::Tiles3dError,
-    gltf::linear,
+    gltf::{linear, y_up},
     read,
     relief_map::ReliefMap,
     surfaces::{Divided, SurfaceKind, TileLines},
@@ -343,12 +343,7 @@ fn row(way_id: i64, class: FunctionalRoadClass, attributes: &RoadAttributes) -> 
         Structure::Ground => "",
         other => other.name(),
     };
-    RoadRow {
-        way_id,
-        class: class.number(),
-        name: attributes.name.clone(),
-        reference: attributes.reference.clone(),
-        highway: attributes.highway.clone(),
-        structure: structure.to_owned(),
-    }
+    let RoadAttributes { name, reference, highway, .. } = attributes;
+    let texts = [name, reference, highway, structure].map(str::to_owned);
+    RoadRow { way_id, class: class.number(), texts }
 }

@@ -67,10 +67,8 @@ impl PrimitiveKind {
 pub(crate) struct RoadRow {
     pub(crate) way_id: i64,
     pub(crate) class: u8,
-    pub(crate) name: String,
-    pub(crate) reference: String,
-    pub(crate) highway: String,
-    pub(crate) structure: String,
+    /// Name, reference, `highway`, and bridge or tunnel.
+    pub(crate) texts: [String; 4],
 }
 
 /// A tile of glTF.
@@ -89,9 +87,4 @@ pub(crate) struct TileContent {
     pub(crate) relief: Option<ReliefMap>,
     pub(crate) copyright: String,
     pub(crate) generator: String,
-}
-
-/// A position or direction of the root frame along glTF's axes.
-pub(crate) fn y_up<T: std::ops::Neg<Output = T>>([x, y, z]: [T; 3]) -> [T; 3] {
-    [x, z, -y]
 }

@@ -7,7 +7,7 @@ use corniche_tileset::Manifest;
 
 use crate::{
     error::CoordinatesError,
-    globe::{RootFrame, cross, dot, unit},
+    globe::{RootFrame, cross, dot, middle_of, unit},
     places::Places,
     relief_map::tangent,
     surfaces::{GroundMesh, across},
@@ -87,7 +87,7 @@ impl Placing<'_> {
                 self.root.of([lon, lat, height_m]).map(|axis| self.snap(axis))
             })
             .collect();
-        let middle_m = middle_of(&at).map(|axis| self.snap(axis));
+        let middle_m = middle_of(&at.iter().copied()).map(|axis| self.snap(axis));
         let mut tile = PlacedTile {
             middle_m,
             vertices: Vec::with_capacity(at.len()),
@@ -180,16 +180,6 @@ fn turned(along: [f32; 3], [east, north, up]: [[f64; 3]; 3]) -> [f32; 3] {
     let [x, y, z] = along.map(f64::from);
     let turned = [0, 1, 2].map(|axis| x * east[axis] + y * north[axis] + z * up[axis]);
     unit(turned).map(|axis| axis as f32)
-}
-
-/// The middle of the box around some positions.
-fn middle_of(at: &[[f64; 3]]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| {
-        let [low, high] = at.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
-            [low.min(at[axis]), high.max(at[axis])]
-        });
-        f64::midpoint(low, high)
-    })
 }
 
 fn sides([u, v]: [f64; 2], bounds: &LatticeBounds) -> [bool; 4] {
