@@ -9,13 +9,39 @@ use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage};
 
 use crate::{
+    bounds::DegreeBounds,
     error::FeaturesError,
-    feature_request::{Coordinates, FeatureRequest},
-    places::Places,
+    places::{Coordinates, Places},
     read,
     sorted_pieces::{FileScratch, SortedPieces},
     vector::{Field, Layer, Record, ShapeKind, VectorFile, VectorFormat},
 };
+
+/// Which objects of a layer of a package are exported, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FeatureRequest<C> {
+    /// The format of the file.
+    pub format: VectorFormat,
+    /// The level whose objects are taken; `None` is the finest.
+    pub level: Option<u8>,
+    /// The classes that are taken.
+    pub classes: Vec<C>,
+    /// Objects are cut here.
+    pub bounds: Option<DegreeBounds>,
+    /// The coordinates of features; only roads have heights.
+    pub coordinates: Coordinates,
+    /// Memory for sorting, bytes.
+    pub memory_bytes: u64,
+}
+
+/// Which features roads become.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RoadFeatures {
+    /// One for each way.
+    Ways,
+    /// One for each piece, as the tiles have them.
+    Pieces,
+}
 
 /// Looks whether lines with heights can be had from a package as they are asked for, before anything is read.
 ///

@@ -10,11 +10,10 @@ use corniche_work::{Observer, Stage};
 
 use crate::{
     error::{FeaturesError, SelectionError},
-    feature_request::Coordinates,
     join::lines,
     measures::{Measures, Profiled},
     piece::{Piece, Vertex},
-    places::Places,
+    places::{Coordinates, Places},
     read,
     sorted_pieces::{FileScratch, SortedPieces},
 };

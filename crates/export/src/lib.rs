@@ -42,7 +42,6 @@ mod dem_ground;
 mod edges;
 mod error;
 mod feature;
-mod feature_request;
 mod features;
 mod gdal_writing;
 mod geotiff;
@@ -83,8 +82,7 @@ pub use error::{
     RouteError, SelectionError, SurfaceError, TileError, Tiles3dError,
 };
 pub use feature::{HeightKind, HeightSource, road_fields};
-pub use feature_request::{Coordinates, FeatureRequest, RoadFeatures};
-pub use features::check_lines_request;
+pub use features::{FeatureRequest, RoadFeatures, check_lines_request};
 pub use geotiff::{
     GeoTiffRequest, GeoTiffSummary, PictureFacts, PlaceOfPicture, export_geotiff, export_picture,
 };
@@ -93,6 +91,7 @@ pub use heights::{Elevation, with_vertical_crs};
 pub use lines::{LinesSummary, export_lines};
 pub use measures::ProfileGrades;
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
+pub use places::Coordinates;
 pub use profile::{
     Course, CourseLeg, Profile, ProfileLeg, ProfilePart, ProfilePoint, profile, profile_of_course,
 };

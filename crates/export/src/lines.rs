@@ -10,8 +10,7 @@ use corniche_work::Observer;
 use crate::{
     cut::cut_line_at_bounds,
     error::{FeaturesError, SelectionError},
-    feature_request::FeatureRequest,
-    features::{About, FeatureSource, Features, write_features},
+    features::{About, FeatureRequest, FeatureSource, Features, write_features},
     piece::Vertex,
     plan_piece::{PlanPiece, class_of, lines_of},
     read,

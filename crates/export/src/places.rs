@@ -8,10 +8,22 @@ use corniche_tileset::Manifest;
 use crate::{
     cut::{cut_at_antimeridian, cut_polygon_at_antimeridian},
     error::CoordinatesError,
-    feature_request::Coordinates,
     measures::distances_m,
     piece::Vertex,
 };
+
+/// What coordinates the features get.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coordinates {
+    /// Coordinates of the package's CRS, with the package's heights: exactly what the tiles hold.
+    Package,
+    /// Longitude, latitude and height above the ellipsoid of WGS84 (EPSG:4979).
+    Wgs84,
+    /// Longitude and latitude of WGS84, with the package's heights as they are.
+    Wgs84WithPackageHeights,
+    /// Coordinates of a projected CRS of the EPSG registry, by its code, with the package's heights as they are.
+    Epsg(u32),
+}
 
 /// Carries places on the lattice to the coordinates of features.
 pub(crate) struct Places<'a> {

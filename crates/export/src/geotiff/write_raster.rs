@@ -14,9 +14,8 @@ use super::{
 use crate::{
     bounds::DegreeBounds,
     error::{RasterError, SelectionError},
-    feature_request::Coordinates,
     heights::Elevation,
-    places::Places,
+    places::{Coordinates, Places},
     read,
 };
 

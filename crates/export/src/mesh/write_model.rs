@@ -8,17 +8,15 @@ use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use super::{
     glb::GlbWriter,
-    local::LocalMetres,
     mesh_request::{MeshFormat, MeshRequest, ModelRoads, UpAxis},
-    model::TileReading,
+    model::{LocalMetres, TileReading},
     obj::ObjWriter,
     ply::PlyWriter,
     writer::{About, MeshWriter},
 };
 use crate::{
     error::{MeshError, SelectionError},
-    feature_request::Coordinates,
-    places::Places,
+    places::{Coordinates, Places},
     read,
     surfaces::{RoadLook, SurfaceKind, TileLines},
 };

@@ -4,12 +4,10 @@ use std::sync::Arc;
 
 use corniche_geom::{Bounds, LatticeBounds, LatticePoint, Seam, TileId};
 use corniche_tileset::{FilePackage, Manifest, Sections};
+use corniche_tin::{NO_TWIN, Surface};
+use corniche_work::Recent;
 
-use super::{
-    node_heights::NodeHeights,
-    surfaces::{SurfaceTile, Surfaces},
-    tiling::Nodes,
-};
+use super::tiling::Nodes;
 use crate::{error::QuantizedMeshError, places::Places, read};
 
 /// How far beside a line edges are looked for that may cross it, as a share of its length: meridians and parallels bend in the package's CRS.
@@ -329,3 +327,101 @@ fn perimeter(bounds: Bounds) -> Vec<[f64; 2]> {
     });
     sides.flatten().collect()
 }
+
+/// What is kept of the package's tiles, about: a square degree of SRTM at its default bound, which the coarse levels look at again and again. Where less
+/// than that is kept, tiles are decoded so often that it takes more time, and, for what is made meanwhile, not less memory.
+pub(crate) const KEPT_BYTES: u64 = 112 << 20;
+/// What a triangle takes with its half of a vertex, about: corners and twins 24 bytes, lists by vertex and by square some 30, of the vertex some 24.
+const TRIANGLE_BYTES: u64 = 96;
+
+/// The tiles that were read last; `None` for those without ground.
+pub(crate) type Surfaces = Recent<TileId, Option<SurfaceTile>>;
+
+/// The ground of a tile of the package.
+#[derive(Debug)]
+pub(crate) struct SurfaceTile {
+    pub(crate) surface: Surface,
+    /// Longitude, latitude and height, as it was asked for, of each vertex; the height is NaN where the finest level has no ground.
+    pub(crate) places: Vec<[f64; 3]>,
+}
+
+impl SurfaceTile {
+    /// What it takes in memory, about.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.surface.triangles().len() as u64 * TRIANGLE_BYTES
+    }
+
+    /// The edges of all triangles that come near a box, each once.
+    pub(crate) fn edges_near(&self, bounds: LatticeBounds) -> Vec<[u32; 2]> {
+        let mut is_near = vec![false; self.surface.triangles().len()];
+        let mut near = Vec::new();
+        self.surface.visit_triangles_near(bounds, |triangle| {
+            if !std::mem::replace(&mut is_near[triangle as usize], true) {
+                near.push(triangle);
+            }
+        });
+        let sides = near.into_iter().flat_map(|triangle| (0..3).map(move |k| 3 * triangle + k));
+        let is_first = |half_edge: &u32| {
+            let twin = self.surface.twin(*half_edge);
+            twin == NO_TWIN || *half_edge < twin || !is_near[twin as usize / 3]
+        };
+        sides.filter(is_first).map(|half_edge| self.surface.ends(half_edge)).collect()
+    }
+}
+
+/// Nodes along each side of a block, which is sampled at once.
+const BLOCK: i64 = 16;
+/// What is kept of the blocks, about: the many tiles along the end of the ground look at the same few of them.
+const KEPT_NODE_BYTES: u64 = 4 << 20;
+
+/// A block of nodes: their level, how many there are along a tile, and the block's column and row.
+type Key = (u8, i64, [i64; 2]);
+
+/// The heights that were looked at last. Without them each tile would look for tiles of the package all over it, for a few places in each.
+pub(crate) struct NodeHeights(Recent<Key, Vec<f64>>);
+
+impl NodeHeights {
+    pub(crate) fn new() -> Self {
+        Self(Recent::new(KEPT_NODE_BYTES))
+    }
+
+    /// Heights at the nodes of a rectangle, given by its south-western and north-eastern node, row by row from the south. `sample` tells those at longitudes
+    /// and latitudes, the same for a place each time.
+    ///
+    /// # Errors
+    /// Those of `sample`.
+    pub(crate) fn of_nodes(
+        &self,
+        nodes: Nodes,
+        [west, south]: [i64; 2],
+        [east, north]: [i64; 2],
+        sample: impl Fn(&[[f64; 2]]) -> Result<Vec<f64>, QuantizedMeshError>,
+    ) -> Result<Vec<f64>, QuantizedMeshError> {
+        let columns = (east - west + 1) as usize;
+        let mut heights_m = vec![f64::NAN; columns * (north - south + 1) as usize];
+        let blocks = |first: i64, last: i64| first.div_euclid(BLOCK)..=last.div_euclid(BLOCK);
+        for block_row in blocks(south, north) {
+            for block_column in blocks(west, east) {
+                let corner = [block_column * BLOCK, block_row * BLOCK];
+                let key = (nodes.level, nodes.per_tile, [block_column, block_row]);
+                let end = corner.map(|index| index + BLOCK - 1);
+                let make = || sample(&nodes.places_deg(corner, end));
+                let block = self.0.get(key, make, |block| size_of_val(&block[..]) as u64)?;
+                let [i0, j0] = corner;
+                for j in south.max(j0)..=north.min(j0 + BLOCK - 1) {
+                    let [first, last] = [west.max(i0), east.min(i0 + BLOCK - 1)];
+                    let (from, count) =
+                        ((j - j0) * BLOCK + first - i0, (last - first + 1) as usize);
+                    let into = (j - south) as usize * columns + (first - west) as usize;
+                    heights_m[into..into + count]
+                        .copy_from_slice(&block[from as usize..from as usize + count]);
+                }
+            }
+        }
+        Ok(heights_m)
+    }
+}
+
+#[cfg(test)]
+#[path = "ground_tests.rs"]
+mod tests;

@@ -7,8 +7,7 @@ use spade::{
 };
 
 use super::{
-    facets::Facets,
-    mesh_vertex::MeshVertex,
+    facets::{Facets, MeshVertex},
     raster::{Sample, TileRaster},
     tiling::LAST_STEP,
 };

@@ -1,8 +1,8 @@
 //! Heights at the nodes of a tile, with one more node on each side, also where there is no ground.
 
 use super::{
+    facets::MeshVertex,
     ground::Ground,
-    mesh_vertex::MeshVertex,
     tiling::{LAST_STEP, Nodes, TerrainTile},
 };
 use crate::{

@@ -19,21 +19,18 @@ use super::{
     available::{Block, blocks},
     comparison::{Comparison, Point, PointFrame},
     encode::encode,
-    ground::Ground,
+    ground::{Ground, KEPT_BYTES, NodeHeights, Surfaces},
     layer::{LAYER, layer, metadata},
     mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, SHARE_OF_VERTICES, tin_of},
-    node_heights::NodeHeights,
     quantized_mesh_request::{
         QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest, QuantizedMeshSummary,
     },
     raster::{Looked, TileRaster},
-    surfaces::{KEPT_BYTES, Surfaces},
     tiling::{Nodes, TerrainTile, Tiling},
 };
 use crate::{
     error::{CoordinatesError, QuantizedMeshError, SelectionError},
-    feature_request::Coordinates,
-    places::Places,
+    places::{Coordinates, Places},
 };
 
 /// Cells along a tile's sides: the fewest, and the most. What lies between nodes is seen at vertices and edges of the package's own triangles.

@@ -12,11 +12,10 @@ use corniche_tileset::{FilePackage, Manifest};
 use corniche_work::{Observer, Stage, workers::make_all};
 
 use super::{
-    content::{self, LevelOfTiles, TileFacts},
+    content::{self, LevelOfTiles, TileFacts, TileRoads, Tiles3dRequest},
     glb,
     parts::TileContent,
     placed::{Placing, TileBox, step_m},
-    tiles3d_request::{TileRoads, Tiles3dRequest},
     tree::{Contents, Tree, content_name},
     vector_style,
 };
