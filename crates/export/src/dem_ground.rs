@@ -34,7 +34,7 @@ pub(crate) struct DemNodes<'a> {
     samples: SampleSurface<'a>,
     pub(crate) frame: GridFrame,
     /// Lattice steps from node to node, east and north.
-    pub(crate) steps: [f64; 2],
+    steps: [f64; 2],
     kept: HashMap<[i64; 2], Block>,
     /// The blocks that are kept, the oldest first.
     order: VecDeque<[i64; 2]>,
@@ -78,7 +78,7 @@ impl<'a> DemNodes<'a> {
 
     /// How far a line is from the surface of the files' own samples, at most, over the whole line, metres; `None` where no part of it lies on that.
     /// Of its vertices each second one is the middle of a straight part.
-    pub(crate) fn farthest_m(&mut self, line: &[Vertex]) -> Result<Option<f64>, ElevationError> {
+    fn farthest_m(&mut self, line: &[Vertex]) -> Result<Option<f64>, ElevationError> {
         let place = |vertex: &Vertex| {
             let [x, y] = self.frame.position_of_fraction_m(vertex.at);
             [x, y, vertex.z_m]

@@ -42,7 +42,7 @@ impl RasterSize {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct RasterGrid {
     /// North-western node.
-    pub(crate) corner: NodeIndex,
+    corner: NodeIndex,
     pub(crate) columns: usize,
     pub(crate) rows: usize,
 }

@@ -20,7 +20,7 @@ pub(crate) struct Smoothing {
 
 impl Smoothing {
     /// What suits an elevation model with cells as long as this: 4.5 cells, and at least 100 m and at most 400 m.
-    pub(crate) fn of_cell(cell_m: f64) -> Self {
+    fn of_cell(cell_m: f64) -> Self {
         Self { length_m: (4.5 * cell_m).clamp(100.0, 400.0) }
     }
 

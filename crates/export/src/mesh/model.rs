@@ -23,7 +23,7 @@ use crate::{
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LocalMetres {
     /// The origin, working metres; whole numbers.
-    pub(crate) origin_m: [f64; 2],
+    origin_m: [f64; 2],
     /// Working metres to a true metre, east and north.
     scale: [f64; 2],
 }
@@ -35,7 +35,7 @@ impl LocalMetres {
     }
 
     /// A position in working metres and a height.
-    pub(crate) fn of(&self, [x, y]: [f64; 2], height_m: f64) -> [f64; 3] {
+    fn of(&self, [x, y]: [f64; 2], height_m: f64) -> [f64; 3] {
         let [east, north] = self.scale;
         [(x - self.origin_m[0]) / east, (y - self.origin_m[1]) / north, height_m]
     }

@@ -30,7 +30,7 @@ pub(crate) struct Point {
 pub(crate) struct PointFrame {
     square: Square,
     /// The middle of the tile, from the earth's centre.
-    pub(crate) middle_m: [f64; 3],
+    middle_m: [f64; 3],
 }
 
 impl PointFrame {

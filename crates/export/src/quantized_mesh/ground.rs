@@ -340,19 +340,19 @@ pub(crate) type Surfaces = Recent<TileId, Option<SurfaceTile>>;
 /// The ground of a tile of the package.
 #[derive(Debug)]
 pub(crate) struct SurfaceTile {
-    pub(crate) surface: Surface,
+    surface: Surface,
     /// Longitude, latitude and height, as it was asked for, of each vertex; the height is NaN where the finest level has no ground.
-    pub(crate) places: Vec<[f64; 3]>,
+    places: Vec<[f64; 3]>,
 }
 
 impl SurfaceTile {
     /// What it takes in memory, about.
-    pub(crate) fn bytes(&self) -> u64 {
+    fn bytes(&self) -> u64 {
         self.surface.triangles().len() as u64 * TRIANGLE_BYTES
     }
 
     /// The edges of all triangles that come near a box, each once.
-    pub(crate) fn edges_near(&self, bounds: LatticeBounds) -> Vec<[u32; 2]> {
+    fn edges_near(&self, bounds: LatticeBounds) -> Vec<[u32; 2]> {
         let mut is_near = vec![false; self.surface.triangles().len()];
         let mut near = Vec::new();
         self.surface.visit_triangles_near(bounds, |triangle| {
@@ -390,7 +390,7 @@ impl NodeHeights {
     ///
     /// # Errors
     /// Those of `sample`.
-    pub(crate) fn of_nodes(
+    fn of_nodes(
         &self,
         nodes: Nodes,
         [west, south]: [i64; 2],

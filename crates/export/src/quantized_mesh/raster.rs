@@ -19,12 +19,12 @@ pub(crate) struct TileRaster {
     pub(crate) nodes: Nodes,
     tile: TerrainTile,
     /// Longitudes of columns, from the west.
-    pub(crate) lon_deg: Vec<f64>,
+    lon_deg: Vec<f64>,
     /// Latitudes of rows, from the north.
     pub(crate) lat_deg: Vec<f64>,
     pub(crate) heights_m: Vec<f64>,
     /// Whether there is ground, rather than a height made up.
-    pub(crate) is_ground: Vec<bool>,
+    is_ground: Vec<bool>,
 }
 
 /// A rectangle of the nodes of a level, with one more node on each side.

@@ -76,7 +76,7 @@ impl Tiling {
         }
     }
 
-    pub(crate) fn rows(level: u8) -> i64 {
+    fn rows(level: u8) -> i64 {
         1 << level
     }
 

@@ -384,22 +384,22 @@ const MOST_IDS: usize = 20;
 
 /// What belongs together of the ways that are meant.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct MatchedRoad {
+struct MatchedRoad {
     /// Its edges, ascending.
-    pub(crate) edges: Vec<usize>,
+    edges: Vec<usize>,
     /// True length in plan of all its ways, metres.
-    pub(crate) length_m: f64,
+    length_m: f64,
 }
 
 impl MatchedRoad {
     /// Its nodes, ascending.
-    pub(crate) fn nodes(&self, graph: &RoadGraph<'_>) -> Vec<usize> {
+    fn nodes(&self, graph: &RoadGraph<'_>) -> Vec<usize> {
         let ends = self.edges.iter().flat_map(|&edge| graph.edges[edge].ends);
         ends.collect::<BTreeSet<usize>>().into_iter().collect()
     }
 
     /// A line of a list: its length, its place and its ways.
-    pub(crate) fn text(&self, graph: &RoadGraph<'_>) -> String {
+    fn text(&self, graph: &RoadGraph<'_>) -> String {
         let way_id = |&edge: &usize| graph.network.way_of(graph.edges[edge].link).way_id;
         let way_ids: BTreeSet<i64> = self.edges.iter().map(way_id).collect();
         let [lon, lat] = self.edges.first().map_or([f64::NAN; 2], |&edge| {

@@ -32,7 +32,7 @@ pub(crate) struct PlaceOnLink {
     /// Distance along the link, in the direction of its way, metres.
     pub(crate) along_m: f64,
     /// The lattice point there.
-    pub(crate) point: LatticePoint,
+    point: LatticePoint,
     /// How far it is from the place that was given, metres.
     pub(crate) off_m: f64,
 }

@@ -364,7 +364,7 @@ impl Above<'_> {
 const SQUARES: usize = 128;
 
 /// The parts of ribbons by the squares of a grid over the tile.
-pub(crate) struct LabelIndex<'a> {
+struct LabelIndex<'a> {
     /// Each part with the label of its ribbon.
     parts: Vec<(u32, &'a [LatticePoint])>,
     /// Places in `parts`, ascending, by square.
@@ -374,7 +374,7 @@ pub(crate) struct LabelIndex<'a> {
 }
 
 impl<'a> LabelIndex<'a> {
-    pub(crate) fn new(ribbons: &'a [Ribbon], tile: &LatticeBounds, middle: LatticePoint) -> Self {
+    fn new(ribbons: &'a [Ribbon], tile: &LatticeBounds, middle: LatticePoint) -> Self {
         let mut index = Self {
             parts: Vec::new(),
             squares: vec![Vec::new(); SQUARES * SQUARES],
@@ -414,7 +414,7 @@ impl<'a> LabelIndex<'a> {
     }
 
     /// The label at a position from the middle of the tile; 0 where there is no road.
-    pub(crate) fn at(&self, at: [f64; 2]) -> u32 {
+    fn at(&self, at: [f64; 2]) -> u32 {
         let [u, v] = [at[0] + self.middle.u as f64, at[1] + self.middle.v as f64];
         let parts = &self.squares[self.row(v) * SQUARES + self.column(u)];
         let parts = parts.iter().map(|part| self.parts[*part as usize]);

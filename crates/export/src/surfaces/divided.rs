@@ -28,7 +28,7 @@ pub(crate) struct Divided {
     /// What the label of a triangle names is told by [`Divided::kind_of`] and [`Divided::road_of`].
     pub(crate) mesh: GroundMesh,
     /// The most important first.
-    pub(crate) roads: Vec<Road>,
+    roads: Vec<Road>,
     /// Triangles that were divided.
     pub(crate) package_triangles: u64,
     /// How long it took, seconds.

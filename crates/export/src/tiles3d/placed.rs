@@ -38,7 +38,7 @@ pub(crate) struct PlacedVertex {
     /// Shares of the way across the tile, from the west and from the north.
     pub(crate) across: [f32; 2],
     /// The tile's sides on which it lies: west, east, south, north.
-    pub(crate) sides: [bool; 4],
+    sides: [bool; 4],
 }
 
 /// A tile on the globe.

@@ -17,7 +17,7 @@ use super::{content::TileFacts, placed::TileBox};
 use crate::globe::RootFrame;
 
 /// The tileset that is opened first.
-pub(crate) const ROOT_NAME: &str = "tileset.json";
+const ROOT_NAME: &str = "tileset.json";
 /// Packages of more tiles are written as several documents.
 const TILES_OF_ONE_DOCUMENT: usize = 300;
 /// Levels in a document of several.
@@ -25,11 +25,11 @@ const LEVELS_OF_A_DOCUMENT: u8 = 4;
 
 /// A tile of the tree.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Branch {
-    pub(crate) tile_box: TileBox,
+struct Branch {
+    tile_box: TileBox,
     /// Never less than that of a child.
-    pub(crate) error_m: f64,
-    pub(crate) facts: TileFacts,
+    error_m: f64,
+    facts: TileFacts,
 }
 
 /// The extension of tilesets whose contents are points, lines and areas, to be drawn as a client's style says.
@@ -48,7 +48,7 @@ pub(crate) enum Contents {
 
 /// All tiles, by their place.
 pub(crate) struct Tree<'a> {
-    pub(crate) manifest: &'a Manifest,
+    manifest: &'a Manifest,
     branches: BTreeMap<TileId, Branch>,
     documents: bool,
 }
