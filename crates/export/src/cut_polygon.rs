@@ -15,7 +15,7 @@ use crate::{
 pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
 
 /// A corner: where it is in working metres, and in degrees as [`DegreeBounds::relative`] has them.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 struct Corner {
     at_m: [f64; 2],
     at_deg: [f64; 2],

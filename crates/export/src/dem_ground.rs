@@ -134,7 +134,7 @@ fn mix(from: f64, to: f64, share: f64) -> f64 {
 const SAME_PLACE_STEPS: f64 = 1e-3;
 
 /// A line on the ground of the elevation files, without a gap.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct DemLine {
     /// Two at least.
     pub(crate) vertices: Vec<Vertex>,

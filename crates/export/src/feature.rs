@@ -27,7 +27,7 @@ pub(crate) struct Road<'a> {
 }
 
 /// The grades of a road without the noise of its heights.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Smooth {
     /// `None` for bridges and tunnels whose deck is not known.
     pub(crate) grades: Option<ProfileGrades>,

@@ -37,7 +37,7 @@ pub(crate) fn up_at(place_deg: [f64; 2]) -> [f64; 3] {
 }
 
 /// The frame in which all tiles are: east, north and up at its origin on the ellipsoid.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct RootFrame {
     origin_m: [f64; 3],
     axes: [[f64; 3]; 3],

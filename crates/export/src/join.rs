@@ -9,7 +9,7 @@ use crate::piece::{Piece, Vertex};
 const SAME_HEIGHT_M: f64 = 1e-6;
 
 /// A line without gaps.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) struct Line {
     pub(crate) vertices: Vec<Vertex>,
     /// Where pieces were joined: numbers of vertices, ascending.

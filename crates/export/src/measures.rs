@@ -7,7 +7,7 @@ use crate::{join::Line, piece::larger};
 pub(crate) const LEAST_GRADE_LENGTH_M: f64 = 20.0;
 
 /// What is measured of a feature, over all its lines.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Measures {
     /// True length in plan, on the ellipsoid of WGS84.
     pub(crate) length_2d_m: f64,

@@ -420,7 +420,7 @@ fn pieces(
 }
 
 /// A way as it is followed once, or a line of a file. A way may be followed again, also back at once.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 struct Leg {
     way_id: i64,
     /// Whether it is followed against its direction.

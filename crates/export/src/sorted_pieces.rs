@@ -15,7 +15,6 @@ use serde::{Serialize, de::DeserializeOwned};
 use crate::error::FeaturesError;
 
 /// Scratch space in a file without a name, which is gone when the program ends, however it ends.
-#[derive(Debug)]
 pub(crate) struct FileScratch {
     file: Mutex<File>,
     folder: PathBuf,

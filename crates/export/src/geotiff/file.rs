@@ -39,7 +39,6 @@ const OPTIONS: [&str; 8] = [
 ];
 
 /// What the pixels of a raster are.
-#[derive(Debug)]
 pub(crate) struct PixelKind {
     /// Creation options beside [`OPTIONS`].
     options: &'static [&'static str],

@@ -14,7 +14,7 @@ use crate::{
 pub(crate) const BLOCK: usize = 256;
 
 /// How many pixels a raster has. They are written in blocks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) struct RasterSize {
     pub(crate) columns: usize,
     pub(crate) rows: usize,
@@ -39,7 +39,7 @@ impl RasterSize {
 }
 
 /// A rectangle of finest nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) struct RasterGrid {
     /// North-western node.
     corner: NodeIndex,

@@ -12,7 +12,7 @@ use corniche_geom::GridFrame;
 pub(crate) const MOST_SPACING_M: f64 = 10.0;
 
 /// How much is smoothed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct Smoothing {
     /// The length of waves of which half is left, metres.
     pub(crate) length_m: f64,
@@ -81,7 +81,7 @@ impl Smoothing {
 }
 
 /// A height with its weight.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct Estimate {
     pub(crate) height_m: f64,
     pub(crate) weight: f64,

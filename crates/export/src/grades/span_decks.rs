@@ -23,7 +23,7 @@ const TOLD_PLACES: usize = 1024;
 const SAME_M: f64 = 1e-6;
 
 /// A part of a chain, and the same part of a chain of the other network.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 struct ChainPart {
     /// Where it begins and ends along the chain, ascending.
     own_m: [f64; 2],
@@ -42,7 +42,7 @@ pub(crate) struct SpanDecks {
 }
 
 /// A stretch of a road: its chain, where it begins and ends along the road, and where these places are along the chain.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 struct Stretch {
     chain: ChainNumber,
     along_m: [f64; 2],

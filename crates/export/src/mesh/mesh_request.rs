@@ -86,7 +86,7 @@ pub enum ModelRoads {
 }
 
 /// Colours of what a model has.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(crate) struct ModelColors {
     /// Colours of the roads of each class.
     roads: [Rgb; FunctionalRoadClass::COUNT],

@@ -20,7 +20,7 @@ use crate::{
 ///
 /// One number along each axis makes true metres of working metres: that of the middle of the data. Elsewhere the package's
 /// [scale](corniche_tileset::ScaleRecord) says by how much they differ.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct LocalMetres {
     /// The origin, working metres; whole numbers.
     origin_m: [f64; 2],
@@ -96,7 +96,7 @@ pub(crate) struct ReliefPicture {
 }
 
 /// A corner of the ground or of a slab.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct Corner {
     pub(crate) at_m: [f64; 3],
     pub(crate) normal: [f32; 3],

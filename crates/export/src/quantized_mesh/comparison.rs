@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// A place of the ground, rounded to a 2²⁴th of the tile: there are many.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Point {
     /// In steps; beyond the tile below 0 or above [`LAST_STEP`].
     uv: [f32; 2],
@@ -26,7 +26,7 @@ pub(crate) struct Point {
 }
 
 /// Where a tile lies, for points in it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct PointFrame {
     square: Square,
     /// The middle of the tile, from the earth's centre.

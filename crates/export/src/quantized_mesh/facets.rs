@@ -5,7 +5,7 @@ use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation as _};
 use crate::globe::{between, dot, geocentric_m};
 
 /// A corner of triangles, in whole steps of the tile.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct MeshVertex {
     pub(crate) u: u16,
     pub(crate) v: u16,
@@ -40,7 +40,7 @@ pub(crate) const OUTSIDE: u32 = 0;
 const ROUNDING: f64 = 1e-5;
 
 /// The triangles, numbered as in the mesh. Number 0 is [`OUTSIDE`].
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(crate) struct Facets {
     /// u and v of each vertex.
     uv: Vec<[f64; 2]>,

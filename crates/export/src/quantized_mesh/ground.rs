@@ -308,7 +308,6 @@ impl<'a> Ground<'a> {
 }
 
 /// Where the ground bends.
-#[derive(Debug)]
 pub(crate) struct Bends<T> {
     /// Vertices.
     pub(crate) points: Vec<T>,
@@ -338,7 +337,6 @@ const TRIANGLE_BYTES: u64 = 96;
 pub(crate) type Surfaces = Recent<TileId, Option<SurfaceTile>>;
 
 /// The ground of a tile of the package.
-#[derive(Debug)]
 pub(crate) struct SurfaceTile {
     surface: Surface,
     /// Longitude, latitude and height, as it was asked for, of each vertex; the height is NaN where the finest level has no ground.

@@ -22,7 +22,7 @@ pub(crate) const SHARE_OF_VERTICES: f64 = 0.8;
 pub(crate) const SHARE_OF_SAMPLES: f64 = 0.1;
 
 /// A tile, as it is written.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(crate) struct TileMesh {
     pub(crate) vertices: Vec<MeshVertex>,
     /// Counter-clockwise from above.
@@ -32,7 +32,7 @@ pub(crate) struct TileMesh {
 }
 
 /// How far triangles, flat as they are drawn on the globe, are from the ground.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Deviation {
     /// Places with ground that were looked at.
     pub(crate) places: u64,

@@ -14,7 +14,7 @@ use crate::{
 const FAR_FROM_GROUND_M: f64 = 0.0;
 
 /// The heights of a tile. Row 0 and column 0 are those of the neighbours in the north and the west.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(crate) struct TileRaster {
     pub(crate) nodes: Nodes,
     tile: TerrainTile,
@@ -352,7 +352,7 @@ impl TileRaster {
 }
 
 /// A side of a tile.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 struct Side {
     /// The axis across it: 0 from west to east, 1 from south to north.
     across: usize,
@@ -376,7 +376,7 @@ impl Side {
 }
 
 /// The package's level that is looked at.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Looked {
     pub(crate) level: u8,
     pub(crate) is_finest: bool,
@@ -412,7 +412,7 @@ impl Samples {
 }
 
 /// A place with ground.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Sample {
     /// u and v.
     pub(crate) steps: [u16; 2],

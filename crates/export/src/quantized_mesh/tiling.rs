@@ -20,7 +20,7 @@ pub enum Tiling {
 }
 
 /// Whether a point stands for a tile at the horizon.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) enum Horizon {
     /// One that is hidden only when the whole tile is.
     Point,
@@ -124,7 +124,7 @@ impl Tiling {
 }
 
 /// The degrees of a tile, in which u and v are fractions of steps.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Square {
     corner_deg: [f64; 2],
     size_deg: [f64; 2],
@@ -158,7 +158,7 @@ pub(crate) fn is_in_tile(uv: [f64; 2]) -> bool {
 /// ```
 ///
 /// Nodes lie where u and v can be, so that no vertex moves when it is written. Longitude and latitude are linear in u and v, in Mercator's tiles, too.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) struct Nodes {
     pub(crate) tiling: Tiling,
     pub(crate) level: u8,

@@ -383,7 +383,7 @@ fn unite(sets: &mut [usize], one: usize, other: usize) {
 const MOST_IDS: usize = 20;
 
 /// What belongs together of the ways that are meant.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 struct MatchedRoad {
     /// Its edges, ascending.
     edges: Vec<usize>,

@@ -16,7 +16,7 @@ const OTHER_ROADS: f64 = 20.0;
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// A link in the direction of its way.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Edge {
     pub(crate) link: Link,
     pub(crate) ends: [usize; 2],
@@ -26,7 +26,7 @@ pub(crate) struct Edge {
 }
 
 /// A place along a link of a graph.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct PlaceOnLink {
     pub(crate) edge: usize,
     /// Distance along the link, in the direction of its way, metres.

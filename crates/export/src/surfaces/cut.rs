@@ -42,7 +42,7 @@ pub(crate) struct Ground<'a> {
 }
 
 /// A vertex of the triangulation, from the middle of the tile.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 struct Node {
     at: Point2<f64>,
     /// The TIN's vertex.

@@ -14,7 +14,7 @@ use super::{
 use crate::{error::SurfaceError, read::surface_of};
 
 /// What a triangle is a surface of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum SurfaceKind {
     Ground,
     /// A road, on the ground or on a bridge.

@@ -24,7 +24,7 @@ pub(crate) struct Slab<'a> {
 }
 
 /// The labels of a slab's triangles.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct SlabLabels {
     /// The road on top.
     pub(crate) road: u32,

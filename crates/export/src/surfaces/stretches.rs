@@ -25,7 +25,7 @@ const NEAR_STEPS: f64 = 2.0;
 const START_M: f64 = 0.1;
 
 /// A stretch of a line in plan.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct Stretch {
     /// Two at least, no two neighbours the same.
     pub(crate) points: Vec<LatticePoint>,

@@ -91,7 +91,7 @@ pub(crate) struct MadeTile {
 }
 
 /// What is known of a tile.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct TileFacts {
     /// The package's bound against the full-resolution DEM.
     pub(crate) bound_m: f64,

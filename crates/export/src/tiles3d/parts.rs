@@ -6,7 +6,7 @@ use corniche_styles::Rgb;
 use crate::{gltf::SLAB_NAME, relief_map::ReliefMap};
 
 /// A list of vertices of one material, as glTF has it: y upwards.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Clone, Default)]
 pub(crate) struct Primitive {
     pub(crate) positions: Vec<[f32; 3]>,
     pub(crate) normals: Vec<[f32; 3]>,
@@ -27,7 +27,7 @@ pub(crate) struct Primitive {
 pub(crate) const RESTART: u32 = u32::MAX;
 
 /// What a part is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) enum PrimitiveKind {
     Terrain,
     Skirt,
@@ -63,7 +63,7 @@ impl PrimitiveKind {
 }
 
 /// A row of the table of roads.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Clone)]
 pub(crate) struct RoadRow {
     pub(crate) way_id: i64,
     pub(crate) class: u8,
@@ -72,7 +72,7 @@ pub(crate) struct RoadRow {
 }
 
 /// A tile of glTF.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct TileContent {
     pub(crate) name: String,
     /// The translation of the node, y upwards.

@@ -26,7 +26,7 @@ pub(crate) fn step_m(reach_m: f64) -> f64 {
 }
 
 /// A vertex on the globe.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct PlacedVertex {
     /// The position from the tile's middle, along the root frame's axes, metres.
     pub(crate) at_m: [f32; 3],
@@ -42,7 +42,7 @@ pub(crate) struct PlacedVertex {
 }
 
 /// A tile on the globe.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(crate) struct PlacedTile {
     /// The middle in the root frame; whole steps.
     pub(crate) middle_m: [f64; 3],
@@ -188,7 +188,7 @@ fn sides([u, v]: [f64; 2], bounds: &LatticeBounds) -> [bool; 4] {
 }
 
 /// A box along some axes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct TileBox {
     axes: [[f64; 3]; 3],
     low: [f64; 3],
@@ -251,7 +251,7 @@ impl TileBox {
 }
 
 /// The walls of a tile.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Clone, Default)]
 pub(crate) struct Skirt {
     /// Positions from the tile's middle, with the tile's vertex whose normal and colour they have.
     pub(crate) vertices: Vec<([f32; 3], u32)>,

@@ -24,7 +24,7 @@ const TILES_OF_ONE_DOCUMENT: usize = 300;
 const LEVELS_OF_A_DOCUMENT: u8 = 4;
 
 /// A tile of the tree.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 struct Branch {
     tile_box: TileBox,
     /// Never less than that of a child.
@@ -38,7 +38,7 @@ struct Branch {
 const VECTOR_EXTENSION: &str = "3DTILES_content_gltf_vector";
 
 /// What tiles of a tileset hold.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 pub(crate) enum Contents {
     /// All have a model.
     All,

@@ -40,7 +40,7 @@ pub struct Field {
 }
 
 /// The value of a field.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) enum Value {
     Integer(i64),
     Real(f64),
@@ -85,14 +85,14 @@ pub(crate) fn text(text: &str) -> Option<&str> {
 }
 
 /// One feature: a value for each field, and its geometry.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct Record {
     pub(crate) values: Vec<Value>,
     pub(crate) shape: Shape,
 }
 
 /// The geometries that a layer holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) enum ShapeKind {
     /// [`Shape::Lines`]
     Lines,
@@ -103,7 +103,7 @@ pub(crate) enum ShapeKind {
 }
 
 /// The geometry of a feature.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) enum Shape {
     /// Lines of x, y and height.
     Lines(Vec<Vec<[f64; 3]>>),

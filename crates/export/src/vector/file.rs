@@ -32,7 +32,7 @@ const SETTINGS: [(&str, &str); 2] =
     [("OGR_SQLITE_SYNCHRONOUS", "OFF"), ("OGR_CURRENT_DATE", geopackage::NO_TIME)];
 
 /// What a file says of itself and of its features.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(crate) struct Layer {
     pub(crate) name: &'static str,
     pub(crate) fields: Vec<Field>,
