@@ -6,6 +6,7 @@ use corniche_geom::{LatticePoint, Seam};
 use crate::{
     bounds::DegreeBounds,
     piece::{Piece, PieceKey, Vertex},
+    plane,
 };
 
 /// What the bounds leave of a piece; see [`cut_line_at_bounds`]. Nothing goes on from a new end.
@@ -87,12 +88,11 @@ fn shares_inside(
     of: [f64; 2],
     parts: &mut Vec<[f64; 2]>,
 ) {
-    let mean = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|axis| f64::midpoint(a[axis], b[axis]));
-    let middle = mean(from, to);
+    let middle = plane::middle(from, to);
     let middle_deg = wgs84(middle);
     let [start, length] = [of[0], of[1] - of[0]];
     let first = bounds.relative(from_deg);
-    let [east, north] = mean(first, bounds.relative_after(to_deg, first));
+    let [east, north] = plane::middle(first, bounds.relative_after(to_deg, first));
     let [is_east, is_north] = bounds.relative_after(middle_deg, first);
     let is_bent = (is_east - east).hypot(is_north - north) > STRAIGHT_DEG;
     if is_bent && length > LEAST_SHARE {

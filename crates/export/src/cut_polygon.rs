@@ -9,6 +9,7 @@ use crate::{
     bounds::DegreeBounds,
     cut::{STEPS, STRAIGHT_DEG, polygons_of},
     places::Places,
+    plane,
 };
 
 /// A polygon as rings of positions in working metres, the outer one first.
@@ -107,7 +108,7 @@ impl Cutting<'_> {
             let from = *corners.last()?;
             let to = after(at_m, Some(from.at_deg));
             let middle = |from: Corner, to: Corner| {
-                let between = after(mean(from.at_m, to.at_m), Some(from.at_deg));
+                let between = after(plane::middle(from.at_m, to.at_m), Some(from.at_deg));
                 Some(Corner { is_between: true, ..between })
             };
             add_between([from, to], &middle, LINE_HALVINGS, &mut corners);
@@ -136,7 +137,7 @@ impl Cutting<'_> {
             Some(Corner { at_m, at_deg, is_between: false })
         };
         let middle = |from: Corner, to: Corner| {
-            let at_deg = mean(from.at_deg, to.at_deg);
+            let at_deg = plane::middle(from.at_deg, to.at_deg);
             Some(Corner { at_m: self.position_m(at_deg)?, at_deg, is_between: true })
         };
         let mut corners = Vec::new();
@@ -184,17 +185,13 @@ fn add_between(
 ) {
     let Some(between) = middle(from, to).filter(|_| halvings > 0) else { return };
     let away = |at: [f64; 2], mean: [f64; 2]| (at[0] - mean[0]).hypot(at[1] - mean[1]);
-    if away(between.at_m, mean(from.at_m, to.at_m)) > STRAIGHT_M
-        || away(between.at_deg, mean(from.at_deg, to.at_deg)) > STRAIGHT_DEG
+    if away(between.at_m, plane::middle(from.at_m, to.at_m)) > STRAIGHT_M
+        || away(between.at_deg, plane::middle(from.at_deg, to.at_deg)) > STRAIGHT_DEG
     {
         add_between([from, between], middle, halvings - 1, corners);
         corners.push(between);
         add_between([between, to], middle, halvings - 1, corners);
     }
-}
-
-fn mean(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
-    [0, 1].map(|axis| f64::midpoint(from[axis], to[axis]))
 }
 
 fn lattice_point(deg: [f64; 2]) -> LatticePoint {

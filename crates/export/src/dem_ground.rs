@@ -17,7 +17,12 @@ use std::{
 use corniche_dem::{Reader, SampleSurface};
 use corniche_geom::{GridFrame, NodeIndex, NodeWindow};
 
-use crate::{error::ElevationError, heights::Elevation, piece::Vertex};
+use crate::{
+    error::ElevationError,
+    heights::Elevation,
+    piece::Vertex,
+    plane::{middle, mix},
+};
 
 /// Cells along each side of a block.
 const BLOCK_CELLS: i64 = 64;
@@ -116,17 +121,6 @@ impl<'a> DemNodes<'a> {
         self.order.push_back(number);
         self.kept.insert(number, Rc::clone(&block));
         Ok(block)
-    }
-}
-
-/// A height between two, of which one counts alone at its own place.
-fn mix(from: f64, to: f64, share: f64) -> f64 {
-    if share <= 0.0 {
-        from
-    } else if share >= 1.0 {
-        to
-    } else {
-        from + share * (to - from)
     }
 }
 
@@ -240,13 +234,7 @@ pub(crate) fn off_dem_m(
 ) -> Result<Option<f64>, ElevationError> {
     let mut divided: Vec<Vertex> = line.first().copied().into_iter().collect();
     for [from, to] in line.array_windows::<2>() {
-        let run = [to.at[0] - from.at[0], to.at[1] - from.at[1]];
-        let axis = usize::from(run[1].abs() > run[0].abs());
-        let on_line = |at: [f64; 2]| {
-            let share = (at[axis] - from.at[axis]) / run[axis];
-            let share = if share.is_finite() { share } else { 0.0 };
-            Vertex { at, z_m: from.z_m + share * (to.z_m - from.z_m), is_source: false }
-        };
+        let on_line = |at| Vertex { at, z_m: from.height_m_at(*to, at), is_source: false };
         divided.extend(
             places_between(from.at, to.at, nodes.steps).into_flattened().into_iter().map(on_line),
         );
@@ -265,7 +253,6 @@ pub(crate) fn places_between(from: [f64; 2], to: [f64; 2], steps: [f64; 2]) -> V
     if is_turned {
         places.reverse();
     }
-    let middle = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|axis| f64::midpoint(a[axis], b[axis]));
     places.array_windows().map(|&[a, b]| [middle(a, b), b]).collect()
 }
 

@@ -58,6 +58,7 @@ mod mesh;
 mod piece;
 mod places;
 mod plan_piece;
+mod plane;
 mod profile;
 mod quantized_mesh;
 mod read;

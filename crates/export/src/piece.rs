@@ -4,7 +4,10 @@ use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
 use corniche_store::SortRecord;
 use serde::{Deserialize, Serialize};
 
-use crate::sorted_pieces::{put, take};
+use crate::{
+    plane::{along, vector},
+    sorted_pieces::{put, take},
+};
 
 /// A vertex of a road on its tile's ground.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -20,9 +23,18 @@ pub(crate) struct Vertex {
 impl Vertex {
     /// The place on the way to another vertex.
     pub(crate) fn towards(self, to: Self, share: f64) -> Self {
-        let mix = |from: f64, to: f64| from + share * (to - from);
-        let at = [0, 1].map(|axis| mix(self.at[axis], to.at[axis]));
-        Self { at, z_m: mix(self.z_m, to.z_m), is_source: false }
+        let [u, v, z_m] =
+            along([self.at[0], self.at[1], self.z_m], [to.at[0], to.at[1], to.z_m], share);
+        Self { at: [u, v], z_m, is_source: false }
+    }
+
+    /// The height at a place on the way to another vertex.
+    pub(crate) fn height_m_at(self, to: Self, at: [f64; 2]) -> f64 {
+        let run = vector(self.at, to.at);
+        let axis = usize::from(run[1].abs() > run[0].abs());
+        let share = (at[axis] - self.at[axis]) / run[axis];
+        let share = if share.is_finite() { share } else { 0.0 };
+        self.z_m + share * (to.z_m - self.z_m)
     }
 }
 

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     dem_ground::DemNodes, error::ElevationError, heights::Elevation, measures::between,
-    places::Places,
+    places::Places, plane::mix,
 };
 
 /// Chains are told of after so many.
@@ -322,14 +322,13 @@ impl<'a> MeasuredChains<'a> {
         let station = (place.floor() as usize).min(last - 1);
         let share = place - station as f64;
         // A station without ground counts only where it counts for something.
-        let mix = |[from, to]: [f64; 2]| match share {
-            ..=0.0 => from,
-            1.0.. => to,
-            _ => from + share * (to - from),
-        };
         let ends = [station, station + 1].map(|station| own.start + station);
-        let ground_m = mix(ends.map(|at| f64::from(self.grounds_m[at])));
-        [ground_m, ground_m + mix(ends.map(|at| f64::from(self.above_m[at])))]
+        let of = |heights_m: &[f32]| {
+            let [from_m, to_m] = ends.map(|at| f64::from(heights_m[at]));
+            mix(from_m, to_m, share)
+        };
+        let ground_m = of(&self.grounds_m);
+        [ground_m, ground_m + of(&self.above_m)]
     }
 
     /// The smooth lines of a way, with distances along it; in parts where heights are not known. Of a bridge or a tunnel the ground's height is that of

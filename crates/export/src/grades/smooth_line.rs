@@ -1,7 +1,10 @@
 //! A smooth line, and what is measured of a part of it.
 
 use super::smoothing::{MOST_SPACING_M, Smoothing};
-use crate::measures::{ProfileGrades, between};
+use crate::{
+    measures::{ProfileGrades, between},
+    plane::along,
+};
 
 /// The steepest grade of a smooth line is taken over this length, metres.
 pub(crate) const GRADE_LENGTH_M: f64 = 50.0;
@@ -156,18 +159,16 @@ impl Station {
     fn towards(self, to: Self, along_m: f64) -> Self {
         let run_m = to.along_m - self.along_m;
         let share = if run_m > 0.0 { (along_m - self.along_m) / run_m } else { 0.0 };
-        if share <= 0.0 {
-            return self;
-        }
-        if share >= 1.0 {
-            return to;
-        }
         let mix = |from: f64, to: f64| from + share * (to - from);
-        Self {
-            at: [0, 1].map(|axis| mix(self.at[axis], to.at[axis])),
-            along_m,
-            height_m: mix(self.height_m, to.height_m),
-            ground_m: mix(self.ground_m, to.ground_m),
+        match share {
+            ..=0.0 => self,
+            1.0.. => to,
+            _ => Self {
+                at: along(self.at, to.at, share),
+                along_m,
+                height_m: mix(self.height_m, to.height_m),
+                ground_m: mix(self.ground_m, to.ground_m),
+            },
         }
     }
 }

@@ -14,6 +14,7 @@ use crate::{
     dem_ground::DemNodes,
     error::ElevationError,
     places::Places,
+    plane::mix,
     span_facts::{SpanFacts, ToldSpans},
 };
 
@@ -160,11 +161,7 @@ impl ChainPart {
 /// Carries a place from one range to another.
 fn carried(at_m: f64, [from_m, to_m]: [f64; 2], [other_from_m, other_to_m]: [f64; 2]) -> f64 {
     let share = ((at_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0);
-    match share {
-        ..=0.0 => other_from_m,
-        1.0.. => other_to_m,
-        _ => other_from_m + share * (other_to_m - other_from_m),
-    }
+    mix(other_from_m, other_to_m, share)
 }
 
 /// The stretches of a road, in its order.

@@ -14,6 +14,7 @@ use super::{
 use crate::{
     bounds::clip,
     globe::{between, dot, geocentric_m, unit},
+    plane::along,
 };
 
 /// A place of the ground, rounded to a 2²⁴th of the tile: there are many.
@@ -295,10 +296,6 @@ fn note(worst: &mut Option<TooFar>, limit_m: f64, off_m: f64, uv: [f64; 2], poin
 /// Whether a place is not on a border, once it is rounded to steps.
 fn is_inside(uv: [f64; 2]) -> bool {
     uv.iter().all(|step| (0.5..f64::from(LAST_STEP) - 0.5).contains(step))
-}
-
-fn along<const N: usize>(from: [f64; N], to: [f64; N], share: f64) -> [f64; N] {
-    std::array::from_fn(|axis| from[axis] + (to[axis] - from[axis]) * share)
 }
 
 /// Where a line comes into the tile, as a share of the way.

@@ -8,7 +8,7 @@ use corniche_tin::{NO_TWIN, Surface};
 use corniche_work::Recent;
 
 use super::tiling::Nodes;
-use crate::{error::QuantizedMeshError, places::Places, read};
+use crate::{error::QuantizedMeshError, places::Places, plane, read};
 
 /// How far beside a line edges are looked for that may cross it, as a share of its length: meridians and parallels bend in the package's CRS.
 const ROOM_BESIDE_LINES: f64 = 0.01;
@@ -150,7 +150,7 @@ impl<'a> Ground<'a> {
                     }
                     let [from, to] = ends.map(|vertex| points[vertex].in_steps());
                     let place = |share: f64| {
-                        let steps = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share);
+                        let steps = plane::along(from, to, share);
                         manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m(steps))
                     };
                     // Edges bend a little in degrees.

@@ -8,6 +8,7 @@ use corniche_roads::FunctionalRoadClass;
 use super::graph::{NONE, PlaceOnLink, RoadGraph, ShortestWays};
 use crate::{
     error::RouteError,
+    plane::along,
     profile::{Course, CourseLeg},
     road_query::{NamedWays, RoadQuery},
 };
@@ -341,14 +342,14 @@ impl Finder<'_> {
     /// The points of a stretch, in its direction.
     fn points(&self, Stretch { edge, from_m, to_m }: Stretch) -> Vec<LatticePoint> {
         let mut points = self.graph.points(&self.graph.edges[edge]);
-        let along_m = self.graph.along(&points);
+        let along_m = self.graph.places.distances_m(points.iter().copied());
         let at = |at_m: f64| {
             let after = along_m.partition_point(|own_m| *own_m < at_m).min(points.len() - 1);
             let before = after.saturating_sub(1);
             let run_m = along_m[after] - along_m[before];
             let share = if run_m > 0.0 { (at_m - along_m[before]) / run_m } else { 1.0 };
             let [from, to] = [before, after].map(|index| points[index].in_steps());
-            let [u, v] = [0, 1].map(|axis| (from[axis] + share * (to[axis] - from[axis])).round());
+            let [u, v] = along(from, to, share).map(f64::round);
             LatticePoint::new(u as i64, v as i64)
         };
         let [low_m, high_m] = [from_m.min(to_m), from_m.max(to_m)];
