@@ -68,10 +68,7 @@ pub fn export_areas(
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<AreasSummary, FeaturesError> {
-    if package.manifest().areas.is_none() {
-        let package = package.path().to_path_buf();
-        return Err(SelectionError::NoLayer { package, layer: NAME }.into());
-    }
+    SelectionError::check_layer(package, NAME, package.manifest().areas.as_ref())?;
     let source = FeatureSource::new(package, request)?;
     let level = source.level;
     let summary =

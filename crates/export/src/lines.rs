@@ -94,10 +94,7 @@ pub fn export_lines(
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<LinesSummary, FeaturesError> {
-    if package.manifest().lines(layer).is_none() {
-        let package = package.path().to_path_buf();
-        return Err(SelectionError::NoLayer { package, layer: layer.name() }.into());
-    }
+    SelectionError::check_layer(package, layer.name(), package.manifest().lines(layer))?;
     let source = FeatureSource::new(package, request)?;
     let level = source.level;
     let summary = LinesSummary { level, ways: 0, lines: 0, points: 0, length_m: 0.0 };

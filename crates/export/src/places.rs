@@ -46,10 +46,6 @@ enum Target {
     Projected(Box<ProjectedCrs>),
 }
 
-fn crs_failed(source: CrsError) -> CoordinatesError {
-    CoordinatesError::Crs(Box::new(source))
-}
-
 impl<'a> Places<'a> {
     pub(crate) fn new(
         manifest: &'a Manifest,
@@ -57,18 +53,18 @@ impl<'a> Places<'a> {
     ) -> Result<Self, CoordinatesError> {
         let Manifest { crs_wkt, metres_per_unit, data_bounds, vertical, settings, .. } = manifest;
         let whole = manifest.whole_data_bounds();
-        let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole).map_err(crs_failed)?;
+        let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole)?;
         let area = manifest.wgs84_bounds;
         let datum = &vertical.datum;
         let given = [&settings.vertical_crs, &settings.dem_vertical_crs];
         let given: Vec<&str> = given.into_iter().flatten().map(String::as_str).collect();
-        let known = RecordedHeights::find(&crs, datum, &given, area).map_err(crs_failed)?;
+        let known = RecordedHeights::find(&crs, datum, &given, area)?;
         let of_package = if known.is_some() {
             format!("{datum}, metres")
         } else {
             format!("metres, datum of the package: {datum}")
         };
-        let projection = || crs.projection(area).map(Box::new).map_err(crs_failed);
+        let projection = || Ok::<_, CrsError>(Box::new(crs.projection(area)?));
         let (target, wkt, heights) = match coordinates {
             Coordinates::Package => {
                 let both = known.as_ref().and_then(RecordedHeights::wkt);
@@ -100,7 +96,7 @@ impl<'a> Places<'a> {
             }
         };
         let beyond = match manifest.clip {
-            Some(_) => Some(Box::new(crs.projection(manifest.area_deg()).map_err(crs_failed)?)),
+            Some(_) => Some(Box::new(crs.projection(manifest.area_deg())?)),
             None => None,
         };
         Ok(Self { manifest, target, beyond, wkt, heights })

@@ -28,8 +28,8 @@ use crate::{
     roads::RoadHeights,
 };
 
+use self::legs::joined_runs;
 pub use self::legs::{Course, CourseLeg, ProfileLeg};
-use self::legs::{joined_runs, legs_of};
 
 /// A place at both ends of the map comes out at the same longitude and latitude to this, as tables of coordinates have them to a centimetre.
 const SAME_PLACE_M: f64 = 0.02;
@@ -240,10 +240,8 @@ impl<'a> Telling<'a> {
             };
             let (runs, smooth_of_runs) = joined_runs(runs, smooth_of_runs);
             let points = self.points(part, (&profile, begin_m), (&runs, &smooth_of_runs));
-            let numbers: Vec<usize> = part.iter().map(|(leg, _)| *leg).collect();
-            let distances_m: Vec<f64> = points.iter().map(|point| point.distance_m).collect();
-            for (number, range_m) in legs_of(&distances_m, &numbers) {
-                self.add_leg(&mut legs, self.legs[number], range_m);
+            for ([from, to], &(leg, _)) in points.array_windows().zip(part.iter().skip(1)) {
+                self.add_leg(&mut legs, self.legs[leg], [from.distance_m, to.distance_m]);
             }
             told.push(ProfilePart { points });
             begin_m += own.length_2d_m;

@@ -56,10 +56,10 @@ impl RasterGrid {
         let manifest = package.manifest();
         let [mut low, mut high] = manifest.data_nodes();
         if let Some(bounds) = bounds {
-            let failed = |source| CoordinatesError::Crs(Box::new(source));
             let Manifest { crs_wkt, metres_per_unit, frame, .. } = manifest;
             let whole = manifest.whole_data_bounds();
-            let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole).map_err(failed)?;
+            let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole)
+                .map_err(CoordinatesError::from)?;
             let asked = nodes_within(
                 bounds.degrees(),
                 crs.working(),
@@ -67,7 +67,7 @@ impl RasterGrid {
                 frame.origin_m(),
                 frame.cell(),
             );
-            let [from, to] = asked.map_err(failed)?;
+            let [from, to] = asked.map_err(CoordinatesError::from)?;
             low = NodeIndex { i: low.i.max(from.i), j: low.j.max(from.j) };
             high = NodeIndex { i: high.i.min(to.i), j: high.j.min(to.j) };
         }

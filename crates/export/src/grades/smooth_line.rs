@@ -70,12 +70,8 @@ impl SmoothLine {
 
     /// How far it is from a line with the same distances at most, metres, between the stations and vertices of both, too.
     pub(crate) fn most_off_m(&self, profile: &[[f64; 2]]) -> f64 {
-        let (Some(first), Some(last)) = (self.stations.first(), self.stations.last()) else {
-            return 0.0;
-        };
-        // Both are straight between stations and vertices: they are farthest apart at one of them.
-        let is_along =
-            |[along_m, _]: &&[f64; 2]| *along_m >= first.along_m && *along_m <= last.along_m;
+        let Some([begin_m, end_m]) = self.ends_m() else { return 0.0 };
+        let is_along = |[along_m, _]: &&[f64; 2]| *along_m >= begin_m && *along_m <= end_m;
         let at_vertices = profile.iter().filter(is_along);
         let at_vertices = at_vertices.map(|&[along_m, height_m]| self.height_m(along_m) - height_m);
         let mut after = 1;
@@ -110,6 +106,11 @@ impl SmoothLine {
         part
     }
 
+    /// The distances at which it begins and ends.
+    fn ends_m(&self) -> Option<[f64; 2]> {
+        Some([self.stations.first()?.along_m, self.stations.last()?.along_m])
+    }
+
     /// Its distances and heights.
     fn profile(&self) -> Vec<[f64; 2]> {
         self.stations.iter().map(|station| [station.along_m, station.height_m]).collect()
@@ -122,8 +123,7 @@ impl SmoothLine {
 
     /// Whether it lies along a whole stretch of its way.
     pub(crate) fn reaches(&self, [from_m, to_m]: [f64; 2]) -> bool {
-        let ends = self.stations.first().zip(self.stations.last());
-        ends.is_some_and(|(first, last)| first.along_m <= from_m && to_m <= last.along_m)
+        self.ends_m().is_some_and(|[begin_m, end_m]| begin_m <= from_m && to_m <= end_m)
     }
 
     /// The place at a distance, or the nearest end beyond them; `None` of an empty line.
@@ -136,10 +136,7 @@ impl SmoothLine {
 
     /// Rise over run of 50 m around a distance, or of what the line has of them.
     pub(crate) fn grade(&self, along_m: f64) -> f64 {
-        let ends = self.stations.first().zip(self.stations.last());
-        let Some([begin_m, end_m]) = ends.map(|(first, last)| [first.along_m, last.along_m]) else {
-            return f64::NAN;
-        };
+        let Some([begin_m, end_m]) = self.ends_m() else { return f64::NAN };
         let half_m = GRADE_LENGTH_M / 2.0;
         let middle_m = along_m.min(end_m - half_m).max(begin_m + half_m);
         let [from_m, to_m] =

@@ -14,7 +14,7 @@ use serde_json::{Map, Value, json};
 use super::{
     mesh_request::{ModelColors, ground_and_roads},
     model::TileMesh,
-    writer::{About, MeshWriter, Spill},
+    writer::{Facts, MeshWriter, Spill},
 };
 use crate::{
     globe::middle_of,
@@ -181,17 +181,14 @@ impl MeshWriter for GlbWriter {
         Ok(())
     }
 
-    fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()> {
+    fn finish(self: Box<Self>, into: &mut dyn Write, facts: &Facts) -> io::Result<()> {
         let Self { gltf, meshes, nodes, materials, .. } = *self;
-        let facts: Map<String, Value> = about
-            .facts
-            .iter()
-            .map(|(name, text)| ((*name).to_owned(), Value::from(text.as_str())))
-            .collect();
+        let fact = |(name, text): &(&str, String)| ((*name).to_owned(), json!(text));
+        let facts: Map<String, Value> = facts.iter().map(fact).collect();
         let asset = json!({
             "version": "2.0",
-            "generator": about.fact("generator"),
-            "copyright": about.fact("attribution"),
+            "generator": facts["generator"],
+            "copyright": facts["attribution"],
             "extras": facts,
         });
         let document = gltf.document(&asset, (&nodes, &meshes), &materials);

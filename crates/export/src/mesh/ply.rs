@@ -11,7 +11,7 @@ use std::{
 use super::{
     mesh_request::{ModelColors, UpAxis},
     model::TileMesh,
-    writer::{About, MeshWriter, Spill, Welding},
+    writer::{Facts, MeshWriter, Spill, Welding},
 };
 use crate::surfaces::SurfaceKind;
 
@@ -106,11 +106,11 @@ impl MeshWriter for PlyWriter {
         Ok(())
     }
 
-    fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()> {
+    fn finish(self: Box<Self>, into: &mut dyn Write, facts: &Facts) -> io::Result<()> {
         let Self { colors, vertices, faces, edges, face_count, edge_count, .. } = *self;
         let mut into = into;
         writeln!(into, "ply\nformat binary_little_endian 1.0")?;
-        for (name, text) in &about.facts {
+        for (name, text) in facts {
             // A comment ends with its line.
             writeln!(into, "comment {name}: {}", text.replace(['\n', '\r'], " "))?;
         }

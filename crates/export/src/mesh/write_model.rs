@@ -12,7 +12,7 @@ use super::{
     model::{LocalMetres, TileReading},
     obj::ObjWriter,
     ply::PlyWriter,
-    writer::{About, MeshWriter},
+    writer::MeshWriter,
 };
 use crate::{
     error::{MeshError, SelectionError},
@@ -102,7 +102,7 @@ pub fn export_mesh(
     };
     facts.push(("axes", up.to_owned()));
     let mut file = BufWriter::new(File::create(path).map_err(failed)?);
-    writer.finish(&mut file, &About { facts }).map_err(failed)?;
+    writer.finish(&mut file, &facts).map_err(failed)?;
     file.into_inner().map_err(|error| failed(error.into_error()))?.sync_all().map_err(failed)?;
     Ok(summary)
 }

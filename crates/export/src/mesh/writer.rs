@@ -12,23 +12,13 @@ use corniche_geom::LatticePoint;
 
 use super::model::{Corner, TileMesh};
 
-/// What a model says of itself.
-pub(crate) struct About<'a> {
-    /// Names and texts.
-    pub(crate) facts: Vec<(&'a str, String)>,
-}
-
-impl About<'_> {
-    pub(crate) fn fact(&self, name: &str) -> &str {
-        let found = self.facts.iter().find(|(own, _)| *own == name);
-        found.map_or("", |(_, text)| text.as_str())
-    }
-}
+/// What is said of a model, in order: names and texts.
+pub(crate) type Facts = [(&'static str, String)];
 
 /// Makes a file of tiles.
 pub(crate) trait MeshWriter {
     fn tile(&mut self, tile: &TileMesh) -> io::Result<()>;
-    fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()>;
+    fn finish(self: Box<Self>, into: &mut dyn Write, facts: &Facts) -> io::Result<()>;
 }
 
 /// Gives the corners of all tiles numbers, one to those that tiles share: positions there are the same to the bit.
