@@ -13,7 +13,7 @@ use corniche_tin::{Placement, Surface};
 
 use crate::{
     between_samples::SampleCells,
-    bounds::DegreeBounds,
+    bounds::{DegreeBounds, intersection},
     error::{SelectionError, TileError},
     piece::{Piece, PieceHeights, PieceKey, Vertex},
 };
@@ -77,13 +77,7 @@ pub(crate) fn meets(manifest: &Manifest, id: TileId, bounds: &DegreeBounds) -> b
 /// The part of a tile on which data can lie. The table of coordinates reaches little beyond the data: of small ones a tile is many times as wide, and
 /// places far outside would come out anywhere.
 pub(crate) fn data_part(manifest: &Manifest, id: TileId) -> Bounds {
-    let (tile, data) = (manifest.frame.tile_bounds(id), manifest.data_bounds);
-    Bounds {
-        min_x: tile.min_x.max(data.min_x),
-        min_y: tile.min_y.max(data.min_y),
-        max_x: tile.max_x.min(data.max_x),
-        max_y: tile.max_y.min(data.max_y),
-    }
+    intersection(manifest.frame.tile_bounds(id), manifest.data_bounds)
 }
 
 /// Longitudes and latitudes over the part of a tile on which data can lie.

@@ -8,7 +8,12 @@ use corniche_tin::{NO_TWIN, Surface};
 use corniche_work::Recent;
 
 use super::tiling::Nodes;
-use crate::{error::QuantizedMeshError, places::Places, plane, read};
+use crate::{
+    bounds::{expanded, intersection},
+    error::QuantizedMeshError,
+    places::Places,
+    plane, read,
+};
 
 /// How far beside a line edges are looked for that may cross it, as a share of its length: meridians and parallels bend in the package's CRS.
 const ROOM_BESIDE_LINES: f64 = 0.01;
@@ -32,12 +37,7 @@ impl<'a> Ground<'a> {
         let data = package.manifest().wgs84_bounds;
         // Sides of the data may bend a little beyond what was sampled of them.
         let margin = 0.001 + 0.02 * (data.max_x - data.min_x).max(data.max_y - data.min_y);
-        let around_deg = Bounds {
-            min_x: data.min_x - margin,
-            min_y: data.min_y - margin,
-            max_x: data.max_x + margin,
-            max_y: data.max_y + margin,
-        };
+        let around_deg = expanded(data, margin);
         Self { package, surfaces, node_heights, places, around_deg }
     }
 
@@ -125,8 +125,6 @@ impl<'a> Ground<'a> {
         [from_deg, to_deg]: [[f64; 2]; 2],
         level: u8,
     ) -> Result<Vec<f64>, QuantizedMeshError> {
-        let manifest = self.package.manifest();
-        let frame = &manifest.frame;
         // The axis along which the line goes, and the one along which it stays.
         let long = [0, 1].map(|axis| (to_deg[axis] - from_deg[axis]).abs());
         let along = usize::from(long[1] > long[0]);
@@ -149,11 +147,7 @@ impl<'a> Ground<'a> {
                         continue;
                     }
                     let [from, to] = ends.map(|vertex| points[vertex].in_steps());
-                    let place = |share: f64| {
-                        let steps = plane::along(from, to, share);
-                        manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m(steps))
-                    };
-                    // Edges bend a little in degrees.
+                    let place = |share: f64| self.places.wgs84(plane::along(from, to, share));
                     let guess = first / (first - last);
                     let off = place(guess)[across] - line;
                     let better = guess - off / (last - first);
@@ -176,16 +170,10 @@ impl<'a> Ground<'a> {
         let frame = &manifest.frame;
         let mut around = perimeter(area_deg);
         self.places.working_from_wgs84(&mut around)?;
-        let mut bounds_m = Bounds::EMPTY;
-        for position in around.into_iter().filter(|place| place.iter().all(|x| x.is_finite())) {
-            bounds_m.include(position);
-        }
-        // Sides bend a little between the places of the perimeter.
-        let margin_m = 0.02 * bounds_m.width().max(bounds_m.height());
-        let corners = [
-            [bounds_m.min_x - margin_m, bounds_m.max_y + margin_m],
-            [bounds_m.max_x + margin_m, bounds_m.min_y - margin_m],
-        ];
+        let known = around.iter().filter(|place| place.iter().all(|x| x.is_finite()));
+        let bounds_m = Bounds::around(known);
+        let bounds_m = expanded(bounds_m, 0.02 * bounds_m.width().max(bounds_m.height()));
+        let corners = [[bounds_m.min_x, bounds_m.max_y], [bounds_m.max_x, bounds_m.min_y]];
         let [Some(first), Some(last)] = corners.map(|corner| frame.snap(corner)) else {
             return Ok(());
         };
@@ -211,12 +199,9 @@ impl<'a> Ground<'a> {
     /// The parts of a rectangle of degrees that may have ground, with the longitudes of the data: more than one where the data cross 180° and the
     /// rectangle goes around the globe.
     fn near_parts(&self, [[west, south], [east, north]]: [[f64; 2]; 2]) -> Vec<Bounds> {
-        let data = self.around_deg;
-        let part = |turns: f64| Bounds {
-            min_x: (west + 360.0 * turns).max(data.min_x),
-            min_y: south.max(data.min_y),
-            max_x: (east + 360.0 * turns).min(data.max_x),
-            max_y: north.min(data.max_y),
+        let part = |turns: f64| {
+            let [min_x, max_x] = [west, east].map(|lon| lon + 360.0 * turns);
+            intersection(Bounds { min_x, min_y: south, max_x, max_y: north }, self.around_deg)
         };
         let parts = [-1.0, 0.0, 1.0].map(part);
         parts

@@ -190,8 +190,6 @@ struct Builder<'a> {
     look: Look,
     parts: Vec<(PrimitiveKind, Primitive)>,
     rows: BTreeMap<i64, RoadRow>,
-    /// Ways of features, until rows have their numbers.
-    ways: Vec<Vec<i64>>,
     line_positions: Vec<[f32; 3]>,
 }
 
@@ -209,7 +207,6 @@ impl<'a> Builder<'a> {
             look,
             parts: Vec::new(),
             rows: BTreeMap::new(),
-            ways: Vec::new(),
             line_positions: Vec::new(),
         }
     }
@@ -245,7 +242,7 @@ impl<'a> Builder<'a> {
         // What a vertex became last, and for which label: each has its own.
         let mut places = vec![None; self.placed.vertices.len()];
         for (kind, labels) in by_kind {
-            let (mut part, mut ways) = (Primitive::default(), Vec::new());
+            let mut part = Primitive::default();
             for (label, of_label) in labels {
                 let road = divided.road_of(label);
                 for corner in of_label.iter().flat_map(|&triangle| self.placed.triangles[triangle])
@@ -260,7 +257,7 @@ impl<'a> Builder<'a> {
                             part.positions.push(y_up(vertex.at_m));
                             part.normals.push(y_up(vertex.normal));
                             match road {
-                                Some(road) => ways.push(road.way_id),
+                                Some(road) => part.ways.push(road.way_id),
                                 None => self.add_look(vertex, &mut part),
                             }
                             index
@@ -269,9 +266,7 @@ impl<'a> Builder<'a> {
                     part.indices.push(index);
                 }
                 if let Some(road) = road {
-                    self.rows
-                        .entry(road.way_id)
-                        .or_insert_with(|| row(road.way_id, road.class, &road.attributes));
+                    self.add_row(road.way_id, road.class, &road.attributes);
                 }
             }
             let kind = match kind {
@@ -280,7 +275,6 @@ impl<'a> Builder<'a> {
                 SurfaceKind::Slab(class) => PrimitiveKind::BridgeSlabs(class),
             };
             self.parts.push((kind, part));
-            self.ways.push(ways);
         }
     }
 
@@ -297,7 +291,6 @@ impl<'a> Builder<'a> {
         }
         part.indices.extend(skirt.triangles.as_flattened());
         self.parts.push((PrimitiveKind::Skirt, part));
-        self.ways.push(Vec::new());
     }
 
     /// Centre-lines, lifted, as parts of a kind.
@@ -310,19 +303,19 @@ impl<'a> Builder<'a> {
     ) -> Result<(), Tiles3dError> {
         let lift_m = (error_m * LIFT_OF_ERROR).max(LEAST_LIFT_M);
         let pieces = read::pieces_of(payload, self.manifest, &self.request.classes)?;
-        let mut by_class: BTreeMap<FunctionalRoadClass, (Primitive, Vec<i64>)> = BTreeMap::new();
+        let mut by_class: BTreeMap<FunctionalRoadClass, Primitive> = BTreeMap::new();
         for piece in pieces {
             if piece.attributes.structure == Structure::Tunnel {
                 continue;
             }
-            let (part, ways) = by_class.entry(piece.class).or_default();
+            let part = by_class.entry(piece.class).or_default();
             let places: Vec<([f64; 2], f64)> =
                 piece.vertices.iter().map(|vertex| (vertex.at, vertex.z_m + lift_m)).collect();
             let first = part.positions.len() as u32;
             for at in placing.positions(&places, self.placed.middle_m)? {
                 self.line_positions.push(at);
                 part.positions.push(y_up(at));
-                ways.push(piece.key.way_id);
+                part.ways.push(piece.key.way_id);
             }
             let end = part.positions.len() as u32;
             if let PrimitiveKind::RoadStrips(_) = kind(piece.class) {
@@ -333,23 +326,27 @@ impl<'a> Builder<'a> {
             } else {
                 part.indices.extend((first + 1..end).flat_map(|next| [next - 1, next]));
             }
-            self.rows
-                .entry(piece.key.way_id)
-                .or_insert_with(|| row(piece.key.way_id, piece.class, &piece.attributes));
+            self.add_row(piece.key.way_id, piece.class, &piece.attributes);
         }
-        for (class, (part, ways)) in by_class {
-            self.parts.push((kind(class), part));
-            self.ways.push(ways);
-        }
+        self.parts.extend(by_class.into_iter().map(|(class, part)| (kind(class), part)));
         Ok(())
     }
 
+    /// Adds a way to the table of roads, if it is not there.
+    fn add_row(&mut self, way_id: i64, class: FunctionalRoadClass, attributes: &RoadAttributes) {
+        self.rows.entry(way_id).or_insert_with(|| {
+            let structure = match attributes.structure {
+                Structure::Ground => "",
+                other => other.name(),
+            };
+            let RoadAttributes { name, reference, highway, .. } = attributes;
+            let texts = [name, reference, highway, structure].map(str::to_owned);
+            RoadRow { way_id, class: class.number(), texts }
+        });
+    }
+
     fn finish(self, id: TileId) -> TileContent {
-        let Self { mut parts, rows, ways, request, placed, manifest, look, .. } = self;
-        let number: BTreeMap<i64, u32> = rows.keys().copied().zip(0..).collect();
-        for ((_, part), ways) in parts.iter_mut().zip(ways) {
-            part.features = ways.iter().map(|way| number[way]).collect();
-        }
+        let Self { parts, rows, request, placed, manifest, look, .. } = self;
         TileContent {
             name: id.to_string(),
             translation: y_up(placed.middle_m),
@@ -374,14 +371,4 @@ fn color(manifest: &Manifest, request: &Tiles3dRequest, height_m: f64) -> Rgb {
 fn mean_color(manifest: &Manifest, request: &Tiles3dRequest, placed: &PlacedTile) -> Rgb {
     let sum: f64 = placed.vertices.iter().map(|vertex| vertex.height_m).sum();
     color(manifest, request, sum / placed.vertices.len().max(1) as f64)
-}
-
-fn row(way_id: i64, class: FunctionalRoadClass, attributes: &RoadAttributes) -> RoadRow {
-    let structure = match attributes.structure {
-        Structure::Ground => "",
-        other => other.name(),
-    };
-    let RoadAttributes { name, reference, highway, .. } = attributes;
-    let texts = [name, reference, highway, structure].map(str::to_owned);
-    RoadRow { way_id, class: class.number(), texts }
 }

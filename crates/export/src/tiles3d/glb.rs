@@ -3,7 +3,10 @@
 //! Sources: Khronos Group, *glTF 2.0 Specification*; `EXT_mesh_features`, `EXT_structural_metadata`, `EXT_meshopt_compression`,
 //! `KHR_materials_unlit`; for strips of lines the draft `KHR_mesh_primitive_restart`.
 
-use std::io::{self, Write};
+use std::{
+    collections::BTreeSet,
+    io::{self, Write},
+};
 
 use corniche_styles::Rgb;
 use serde_json::{Map, Value, json};
@@ -31,7 +34,7 @@ pub(crate) fn write(
     let mut file = File { gltf: Gltf::default(), decoded: 0, is_compressed };
     let (mut primitives, mut materials) = (Vec::new(), Vec::new());
     for (kind, part) in &tile.parts {
-        let mut primitive = file.primitive(*kind, part)?;
+        let mut primitive = file.primitive(*kind, part, &tile.roads)?;
         primitive["material"] = json!(materials.len());
         let mut material = material_of(*kind, &tile.colors);
         // Textures and places on them have the same order: the photo, then the relief.
@@ -78,7 +81,12 @@ struct File {
 }
 
 impl File {
-    fn primitive(&mut self, kind: PrimitiveKind, part: &Primitive) -> io::Result<Value> {
+    fn primitive(
+        &mut self,
+        kind: PrimitiveKind,
+        part: &Primitive,
+        roads: &[RoadRow],
+    ) -> io::Result<Value> {
         let mut attributes = Map::new();
         let at = &mut attributes;
         self.attribute(at, "POSITION", &part.positions, positions(&part.positions))?;
@@ -93,13 +101,12 @@ impl File {
         let mut primitive = json!({ "mode": TRIANGLES, "extras": { "part": kind.name() } });
         if let Some(class) = kind.class() {
             // Every whole number to 2²⁴ is an f32, and all readers know attributes of them.
-            let features: Vec<f32> = part.features.iter().map(|row| *row as f32).collect();
+            let row_of = |way: &i64| roads.partition_point(|row| row.way_id < *way) as f32;
+            let features: Vec<f32> = part.ways.iter().map(row_of).collect();
             self.attribute(at, "_FEATURE_ID_0", &features, floats("SCALAR"))?;
-            let mut rows = part.features.clone();
-            rows.sort_unstable();
-            rows.dedup();
+            let ways: BTreeSet<i64> = part.ways.iter().copied().collect();
             primitive["extensions"] = json!({ "EXT_mesh_features": { "featureIds": [{
-                "featureCount": rows.len(), "attribute": 0, "propertyTable": 0, "label": "way",
+                "featureCount": ways.len(), "attribute": 0, "propertyTable": 0, "label": "way",
             }] } });
             primitive["extras"]["frc"] = json!(class.number());
         }

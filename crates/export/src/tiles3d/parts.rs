@@ -17,8 +17,8 @@ pub(crate) struct Primitive {
     /// Where on the tile's relief, and the tangents that it is read with, sides told by 1; empty without one, and for roads.
     pub(crate) relief_places: Vec<[f32; 2]>,
     pub(crate) tangents: Vec<[f32; 4]>,
-    /// Rows of the table of roads.
-    pub(crate) features: Vec<u32>,
+    /// The ways of the vertices of roads.
+    pub(crate) ways: Vec<i64>,
     /// Three to a triangle, two to a line; strips with [`RESTART`] between them.
     pub(crate) indices: Vec<u32>,
 }
