@@ -21,8 +21,7 @@ use crate::{
     features::{About, FeatureRequest, FeatureSource},
     grades::{GRADE_LENGTH_M, MeasuredChains},
     heights::{Elevation, dem_heights},
-    join::Line,
-    measures::{ProfileGrades, Profiled},
+    measures::{ProfileGrades, profile_of},
     piece::{Vertex, larger},
     road_query::{RoadQuery, named_ways},
     span_facts::SpanFacts,
@@ -35,7 +34,7 @@ use crate::{
 /// Lines of a network lie on its ways: half a metre allows for nothing but rounding.
 const NEAR_STEPS: f64 = 500.0;
 /// Edges are told of after so many.
-const TOLD_EDGES: u64 = 1024;
+const TOLD_EDGES: usize = 1024;
 
 /// What was exported.
 #[derive(Debug, Clone, PartialEq)]
@@ -152,48 +151,46 @@ pub fn export_edges(
         let is_meant = |link: &Link| named.meant.contains(&network.way_of(*link).way_id);
         numbers.retain(|&number| edges.get(number).links.iter().any(is_meant));
     }
-    let all = numbers.len() as u64;
-    observer.begin(Stage::ExportFeatures, Some(all));
-    let mut told = 0;
-    for (done, number) in (1..).zip(numbers) {
-        if done % TOLD_EDGES == 0 || done == all {
-            observer.check()?;
-            observer.advance(Stage::ExportFeatures, done - told);
-            told = done;
+    observer.begin(Stage::ExportFeatures, Some(numbers.len() as u64));
+    for some in numbers.chunks(TOLD_EDGES) {
+        observer.check()?;
+        for &number in some {
+            let chain = edges.get(number);
+            if !measured.reaches(&chain) {
+                continue;
+            }
+            let LaidEdge { lines, decks } = laid(&measured, &mut nodes, &chain)?;
+            if lines.is_empty() {
+                summary.without_ground += 1;
+                continue;
+            }
+            let profile = measured.profile(chain.links, &decks);
+            let nodes_m = node_heights(&measured, &chain);
+            let own_m = |place: Option<&[f64; 2]>| place.map(|&[_, height_m]| height_m);
+            let own_m =
+                profile.as_ref().map(|profile| [profile.first(), profile.last()].map(own_m));
+            let own_m = own_m.unwrap_or_default();
+            let edge = Edge {
+                ends: chain.ends.map(|node| network.node_id(node)),
+                ways: ways_text(network, &chain),
+                shares: Shares::of(&measured, &chain),
+                grades: profile.map(|profile| ProfileGrades::of([profile], GRADE_LENGTH_M)),
+                heights_m: [0, 1].map(|end| nodes_m[end].or(own_m[end])),
+            };
+            summary.edges += 1;
+            summary.length_m += edge.shares.length_m;
+            summary.without_ascent += u64::from(edge.grades.is_none());
+            let object = AreaObject::Way(network.way_of(chain.links[0]).way_id);
+            let mut carried = Vec::new();
+            for line in lines {
+                summary.height_tolerance_m =
+                    summary.height_tolerance_m.max(line.tolerance_m.unwrap_or(0.0));
+                carried.extend(places.carry(object, &line.vertices)?);
+            }
+            let values = FIELDS.iter().map(|(_, value)| value(&edge)).collect();
+            file.push(Record { values, shape: Shape::Lines(carried) })?;
         }
-        let chain = edges.get(number);
-        if !measured.reaches(&chain) {
-            continue;
-        }
-        let LaidEdge { lines, decks } = laid(&measured, &mut nodes, &chain)?;
-        if lines.is_empty() {
-            summary.without_ground += 1;
-            continue;
-        }
-        let profile = measured.profile(chain.links, &decks);
-        let nodes_m = node_heights(&measured, &chain);
-        let own_m = |place: Option<&[f64; 2]>| place.map(|&[_, height_m]| height_m);
-        let own_m = profile.as_ref().map(|profile| [profile.first(), profile.last()].map(own_m));
-        let own_m = own_m.unwrap_or_default();
-        let edge = Edge {
-            ends: chain.ends.map(|node| network.node_id(node)),
-            ways: ways_text(network, &chain),
-            shares: Shares::of(&measured, &chain),
-            grades: profile.map(|profile| ProfileGrades::of([profile], GRADE_LENGTH_M)),
-            heights_m: [0, 1].map(|end| nodes_m[end].or(own_m[end])),
-        };
-        summary.edges += 1;
-        summary.length_m += edge.shares.length_m;
-        summary.without_ascent += u64::from(edge.grades.is_none());
-        let object = AreaObject::Way(network.way_of(chain.links[0]).way_id);
-        let mut carried = Vec::new();
-        for line in lines {
-            summary.height_tolerance_m =
-                summary.height_tolerance_m.max(line.tolerance_m.unwrap_or(0.0));
-            carried.extend(places.carry(object, &line.vertices)?);
-        }
-        let values = FIELDS.iter().map(|(_, value)| value(&edge)).collect();
-        file.push(Record { values, shape: Shape::Lines(carried) })?;
+        observer.advance(Stage::ExportFeatures, some.len() as u64);
     }
     file.tell_heights(dem_heights(summary.height_tolerance_m, true));
     file.finish()?;
@@ -235,8 +232,7 @@ fn laid(
         let carrier = Carrier { structure, way: &way, most_steps: NEAR_STEPS, is_turned };
         for own in lay_on_deck(nodes, &line, &carrier, &distance_m)? {
             if own.on_deck && own.has_end == [true; 2] {
-                let line = Line { vertices: own.vertices.clone(), joins: Vec::new() };
-                decks.insert(first_link, Profiled::of(&line, &distance_m).profile);
+                decks.insert(first_link, profile_of(&own.vertices, &distance_m));
             }
             let ends = lines.last().and_then(|line| line.vertices.last());
             let goes_on = own.has_end[0]

@@ -1,6 +1,9 @@
 //! How long, how steep and how detailed lines are.
 
-use crate::{join::Line, piece::larger};
+use crate::{
+    join::Line,
+    piece::{Vertex, larger},
+};
 
 /// A grade is taken over at least this length: shorter ones tell of single triangles and of steps in the heights, not of the
 /// road.
@@ -41,10 +44,18 @@ pub(crate) struct Profiled<'a> {
 impl<'a> Profiled<'a> {
     /// A line with its profile. `distance_m` gives the true distance in plan between two places on the lattice.
     pub(crate) fn of(line: &'a Line, distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64) -> Self {
-        let distances_m = distances_m(line.vertices.iter().map(|vertex| vertex.at), distance_m);
-        let places = distances_m.into_iter().zip(&line.vertices);
-        Self { line, profile: places.map(|(along_m, vertex)| [along_m, vertex.z_m]).collect() }
+        Self { line, profile: profile_of(&line.vertices, distance_m) }
     }
+}
+
+/// The profile of a line: true distances in plan from its beginning, and heights.
+pub(crate) fn profile_of(
+    vertices: &[Vertex],
+    distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64,
+) -> Vec<[f64; 2]> {
+    let distances_m = distances_m(vertices.iter().map(|vertex| vertex.at), distance_m);
+    let places = distances_m.into_iter().zip(vertices);
+    places.map(|(along_m, vertex)| [along_m, vertex.z_m]).collect()
 }
 
 /// How far along a line each of its places is, from the first.

@@ -3,7 +3,6 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::piece::Vertex;
 
 fn line(vertices: &[([f64; 2], f64, bool)], joins: &[usize]) -> Line {
     let vertices = vertices.iter().map(|&(at, z_m, is_source)| Vertex { at, z_m, is_source });

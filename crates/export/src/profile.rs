@@ -21,7 +21,7 @@ use crate::{
     heights::{Elevation, sample_bound_m},
     join::{Line, lines},
     laid_lines::laid_lines,
-    measures::{LEAST_GRADE_LENGTH_M, Measures, ProfileGrades, Profiled},
+    measures::{LEAST_GRADE_LENGTH_M, ProfileGrades, profile_of},
     piece::{Piece, Vertex},
     places::{Coordinates, Places},
     read,
@@ -205,7 +205,7 @@ impl<'a> Telling<'a> {
         let frame = &self.places.manifest.frame;
         let smoothing = self.elevation.map(|_| Smoothing::of_frame(frame));
         let distance_m = self.places.metric();
-        let mut whole = Measures::default();
+        let mut length_3d_m = 0.0;
         let mut on_ground = Vec::new();
         let mut smooth = Vec::new();
         let mut most_off_m = 0.0_f64;
@@ -214,15 +214,15 @@ impl<'a> Telling<'a> {
         let mut on_structures_m = 0.0;
         let mut begin_m = 0.0;
         for part in parts {
-            let line =
-                Line { vertices: part.iter().map(|(_, at)| *at).collect(), joins: Vec::new() };
-            let profile = Profiled::of(&line, &distance_m).profile;
-            let own = Measures::of(&[Profiled { line: &line, profile: profile.clone() }]);
-            whole.length_2d_m += own.length_2d_m;
-            whole.length_3d_m += own.length_3d_m;
+            let vertices: Vec<Vertex> = part.iter().map(|(_, vertex)| *vertex).collect();
+            let profile = profile_of(&vertices, &distance_m);
+            let own_m = profile.last().map_or(0.0, |last| last[0]);
+            let lengths_m =
+                profile.array_windows().map(|[from, to]| (to[0] - from[0]).hypot(to[1] - from[1]));
+            length_3d_m += lengths_m.sum::<f64>();
             let runs = self.runs_on_ground(part);
             let lengths_m = runs.iter().map(|run| profile[run.end - 1][0] - profile[run.start][0]);
-            on_structures_m += own.length_2d_m - lengths_m.sum::<f64>();
+            on_structures_m += own_m - lengths_m.sum::<f64>();
             let smooth_of_runs: Vec<SmoothLine> = match smoothing {
                 Some(smoothing) => {
                     let of = |run: &Range<usize>| {
@@ -244,18 +244,13 @@ impl<'a> Telling<'a> {
                 self.add_leg(&mut legs, self.legs[leg], [from.distance_m, to.distance_m]);
             }
             told.push(ProfilePart { points });
-            begin_m += own.length_2d_m;
+            begin_m += own_m;
             for (run, line) in runs.iter().zip(&smooth_of_runs) {
                 most_off_m = most_off_m.max(line.most_off_m(&profile[run.clone()]));
             }
             smooth.extend(smooth_of_runs);
-            for run in runs {
-                let vertices = line.vertices[run].to_vec();
-                on_ground.push(Line { vertices, joins: Vec::new() });
-            }
+            on_ground.extend(runs.into_iter().map(|run| profile_of(&vertices[run], &distance_m)));
         }
-        let on_ground: Vec<Profiled<'_>> =
-            on_ground.iter().map(|line| Profiled::of(line, &distance_m)).collect();
         let smooth = smoothing.map(|_| (grades_of(&smooth), most_off_m));
         Profile {
             level: self.level,
@@ -263,10 +258,10 @@ impl<'a> Telling<'a> {
             height_tolerance_m: self.tolerance_m,
             parts: told,
             legs: legs.into_iter().map(|(_, leg)| leg).collect(),
-            length_2d_m: whole.length_2d_m,
-            length_3d_m: whole.length_3d_m,
+            length_2d_m: begin_m,
+            length_3d_m,
             on_structures_m,
-            grades: Measures::of(&on_ground).grades,
+            grades: ProfileGrades::of(on_ground, LEAST_GRADE_LENGTH_M),
             smooth,
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use corniche_drape::{DrapedLine, DrapedVertex};
-use corniche_geom::{Bounds, GridFrame, LatticePoint, TileId};
+use corniche_geom::{Bounds, GridFrame, LatticeBounds, LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{
     DecodeError, FilePackage, GeoRoad, Manifest, Sections, SpanRun, Terrain, TilePayload,
@@ -222,15 +222,14 @@ pub(crate) fn vertices(
 /// Whether the ends of a line are points on its tile's border. A line that ends where the ground ends has no such point.
 fn goes_on(road: &GeoRoad, frame: &GridFrame, id: TileId) -> [bool; 2] {
     let tile = frame.tile_lattice_bounds(id);
-    let is_on_border = |point: LatticePoint| {
-        point.u == tile.min.u
-            || point.u == tile.max.u
-            || point.v == tile.min.v
-            || point.v == tile.max.v
-    };
     let vertices = &road.line.vertices;
     [vertices.first(), vertices.last()].map(|vertex| match vertex {
-        Some(DrapedVertex::Source { point, .. }) => is_on_border(*point),
+        Some(DrapedVertex::Source { point, .. }) => is_on_border(*point, &tile),
         _ => false,
     })
+}
+
+/// Whether a point of a tile lies on its border.
+pub(crate) fn is_on_border(point: LatticePoint, tile: &LatticeBounds) -> bool {
+    [tile.min.u, tile.max.u].contains(&point.u) || [tile.min.v, tile.max.v].contains(&point.v)
 }

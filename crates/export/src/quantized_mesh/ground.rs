@@ -21,24 +21,19 @@ const ROOM_BESIDE_LINES: f64 = 0.01;
 /// The ground, read tile by tile. It belongs to one thread; what it reads is shared.
 pub(crate) struct Ground<'a> {
     package: &'a FilePackage,
-    surfaces: &'a Surfaces,
-    node_heights: &'a NodeHeights,
+    kept: &'a Kept,
     places: Places<'a>,
     /// Degrees outside of which there is no ground.
     around_deg: Bounds,
 }
 
 impl<'a> Ground<'a> {
-    pub(crate) fn new(
-        package: &'a FilePackage,
-        (surfaces, node_heights): (&'a Surfaces, &'a NodeHeights),
-        places: Places<'a>,
-    ) -> Self {
+    pub(crate) fn new(package: &'a FilePackage, kept: &'a Kept, places: Places<'a>) -> Self {
         let data = package.manifest().wgs84_bounds;
         // Sides of the data may bend a little beyond what was sampled of them.
         let margin = 0.001 + 0.02 * (data.max_x - data.min_x).max(data.max_y - data.min_y);
         let around_deg = expanded(data, margin);
-        Self { package, surfaces, node_heights, places, around_deg }
+        Self { package, kept, places, around_deg }
     }
 
     /// Heights at longitudes and latitudes, as they were asked for; NaN where there is no ground. What comes out for a place depends on nothing but the
@@ -76,7 +71,7 @@ impl<'a> Ground<'a> {
         nodes: Nodes,
         [from, to]: [[i64; 2]; 2],
     ) -> Result<Vec<f64>, QuantizedMeshError> {
-        self.node_heights.of_nodes(nodes, from, to, |places_deg| self.heights_m(places_deg))
+        self.kept.node_heights.of_nodes(nodes, from, to, |places_deg| self.heights_m(places_deg))
     }
 
     fn is_near(&self, [lon, lat]: [f64; 2]) -> bool {
@@ -262,7 +257,7 @@ impl<'a> Ground<'a> {
 
     fn tile(&self, id: TileId) -> Result<Arc<Option<SurfaceTile>>, QuantizedMeshError> {
         let bytes = |tile: &Option<SurfaceTile>| tile.as_ref().map_or(0, SurfaceTile::bytes);
-        self.surfaces.get(id, || self.read(id), bytes)
+        self.kept.surfaces.get(id, || self.read(id), bytes)
     }
 
     fn read(&self, id: TileId) -> Result<Option<SurfaceTile>, QuantizedMeshError> {
@@ -314,15 +309,26 @@ fn perimeter(bounds: Bounds) -> Vec<[f64; 2]> {
 
 /// What is kept of the package's tiles, about: a square degree of SRTM at its default bound, which the coarse levels look at again and again. Where less
 /// than that is kept, tiles are decoded so often that it takes more time, and, for what is made meanwhile, not less memory.
-pub(crate) const KEPT_BYTES: u64 = 112 << 20;
+const KEPT_BYTES: u64 = 112 << 20;
 /// What a triangle takes with its half of a vertex, about: corners and twins 24 bytes, lists by vertex and by square some 30, of the vertex some 24.
 const TRIANGLE_BYTES: u64 = 96;
 
-/// The tiles that were read last; `None` for those without ground.
-pub(crate) type Surfaces = Recent<TileId, Option<SurfaceTile>>;
+/// What was read last, for all threads.
+pub(crate) struct Kept {
+    /// `None` for tiles without ground.
+    surfaces: Recent<TileId, Option<SurfaceTile>>,
+    node_heights: NodeHeights,
+}
+
+impl Kept {
+    /// Nothing yet.
+    pub(crate) fn new() -> Self {
+        Self { surfaces: Recent::new(KEPT_BYTES), node_heights: NodeHeights::new() }
+    }
+}
 
 /// The ground of a tile of the package.
-pub(crate) struct SurfaceTile {
+struct SurfaceTile {
     surface: Surface,
     /// Longitude, latitude and height, as it was asked for, of each vertex; the height is NaN where the finest level has no ground.
     places: Vec<[f64; 3]>,
@@ -361,7 +367,7 @@ const KEPT_NODE_BYTES: u64 = 4 << 20;
 type Key = (u8, i64, [i64; 2]);
 
 /// The heights that were looked at last. Without them each tile would look for tiles of the package all over it, for a few places in each.
-pub(crate) struct NodeHeights(Recent<Key, Vec<f64>>);
+struct NodeHeights(Recent<Key, Vec<f64>>);
 
 impl NodeHeights {
     pub(crate) fn new() -> Self {

@@ -19,7 +19,7 @@ use super::{
     available::{Block, blocks},
     comparison::{Comparison, Point, PointFrame},
     encode::encode,
-    ground::{Ground, KEPT_BYTES, NodeHeights, Surfaces},
+    ground::{Ground, Kept},
     layer::{LAYER, layer, metadata},
     mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, SHARE_OF_VERTICES, tin_of},
     quantized_mesh_request::{
@@ -55,9 +55,7 @@ pub fn export_quantized_mesh(
     let manifest = package.manifest();
     let (finest, candidates) = (plan.finest(), plan.candidates);
     let heights = heights_in_words(manifest, request.coordinates)?;
-    let (surfaces, node_heights) = (Surfaces::new(KEPT_BYTES), NodeHeights::new());
-    let stores = (&surfaces, &node_heights);
-    let job = Job { package, stores, request, finest };
+    let job = Job { package, kept: &Kept::new(), request, finest };
     let writer = Writer { job: &job, folder, observer };
     let total = with_ancestors(request.tiling, &candidates).len() as u64;
     observer.begin(Stage::ExportTiles, Some(total));
@@ -154,7 +152,7 @@ type Available<'a> = Option<&'a [Vec<Block>]>;
 
 struct Job<'a> {
     package: &'a FilePackage,
-    stores: (&'a Surfaces, &'a NodeHeights),
+    kept: &'a Kept,
     request: &'a QuantizedMeshRequest,
     /// The finest level.
     finest: u8,
@@ -229,8 +227,7 @@ pub(crate) fn mean_bytes(
     (request, finest): (&QuantizedMeshRequest, u8),
     tiles: &[TerrainTile],
 ) -> Result<Option<f64>, QuantizedMeshError> {
-    let (surfaces, node_heights) = (Surfaces::new(KEPT_BYTES), NodeHeights::new());
-    let job = Job { package, stores: (&surfaces, &node_heights), request, finest };
+    let job = Job { package, kept: &Kept::new(), request, finest };
     let ground = job.ground()?;
     let (mut files, mut bytes) = (0_u32, 0.0);
     for tile in tiles {
@@ -245,7 +242,7 @@ pub(crate) fn mean_bytes(
 impl<'a> Job<'a> {
     fn ground(&self) -> Result<Ground<'a>, QuantizedMeshError> {
         let places = Places::new(self.package.manifest(), self.request.coordinates)?;
-        Ok(Ground::new(self.package, self.stores, places))
+        Ok(Ground::new(self.package, self.kept, places))
     }
 
     /// The error to which a level is meshed: that which a viewer assumes. The finest level has all that the package has where its raster is as fine as

@@ -309,10 +309,9 @@ impl<'a> Builder<'a> {
                 continue;
             }
             let part = by_class.entry(piece.class).or_default();
-            let places: Vec<([f64; 2], f64)> =
-                piece.vertices.iter().map(|vertex| (vertex.at, vertex.z_m + lift_m)).collect();
+            let places = piece.vertices.iter().map(|vertex| (vertex.at, vertex.z_m + lift_m));
             let first = part.positions.len() as u32;
-            for at in placing.positions(&places, self.placed.middle_m)? {
+            for at in placing.positions(places, self.placed.middle_m)? {
                 self.line_positions.push(at);
                 part.positions.push(y_up(at));
                 part.ways.push(piece.key.way_id);

@@ -275,12 +275,7 @@ impl Job<'_> {
 
     fn tile(&self, id: TileId, places: &Places<'_>) -> Result<Option<Written>, Tiles3dError> {
         let level = &self.levels[usize::from(id.z())];
-        let placing = Placing {
-            manifest: self.package.manifest(),
-            places,
-            root: &self.root,
-            step_m: level.step_m,
-        };
+        let placing = Placing { places, root: &self.root, step_m: level.step_m };
         let made = content::make(self.package, id, self.request, &self.lines, &placing, level)?;
         let Some(made) = made else { return Ok(None) };
         let write = |folder: &Path, content: &TileContent| {
