@@ -44,7 +44,7 @@ pub(crate) fn write_container<W: Write + ?Sized>(
 pub(crate) struct Gltf<B> {
     /// What the buffer is written to.
     pub(crate) bytes: B,
-    /// Of the buffer, bytes.
+    /// Bytes of the buffer.
     pub(crate) length: usize,
     pub(crate) views: Vec<Value>,
     accessors: Vec<Value>,

@@ -37,7 +37,7 @@ pub struct LinesSummary {
 struct LineFeature<'a> {
     way_id: i64,
     class: LineClass,
-    /// Those of what ways bound.
+    /// The names of what ways bound.
     names: Option<&'a LineNames>,
     length_m: f64,
     parts: usize,
