@@ -126,7 +126,8 @@ pub fn export_edges(
     let frame = &package.manifest().frame;
     // Edges that reach the package's data are whole.
     let plan = elevation.plan.of_whole_data();
-    let mut nodes = DemNodes::new(Elevation { plan: &plan, ..elevation }, frame);
+    let elevation = Elevation { plan: &plan, ..elevation };
+    let mut nodes = DemNodes::new(elevation, frame);
     let places = &source.places;
     let measured = MeasuredChains::measure(network, places, elevation, observer)?;
     let about = About {
@@ -174,7 +175,7 @@ pub fn export_edges(
                 ends: chain.ends.map(|node| network.node_id(node)),
                 ways: ways_text(network, &chain),
                 shares: Shares::of(&measured, &chain),
-                grades: profile.map(|profile| ProfileGrades::of([profile], GRADE_LENGTH_M)),
+                grades: profile.as_deref().map(grades_of),
                 heights_m: [0, 1].map(|end| nodes_m[end].or(own_m[end])),
             };
             summary.edges += 1;
@@ -249,6 +250,12 @@ fn laid(
         first_link += links.len();
     }
     Ok(LaidEdge { lines, decks })
+}
+
+/// The grades of an edge. Files have had −0 for what a level edge falls.
+fn grades_of(profile: &[[f64; 2]]) -> ProfileGrades {
+    let falls = profile.array_windows().map(|[from, to]| (-(to[1] - from[1])).max(0.0));
+    ProfileGrades { descent_m: falls.sum(), ..ProfileGrades::of([profile], GRADE_LENGTH_M) }
 }
 
 /// The heights of both nodes that other edges share; none on a bridge or in a tunnel, whose own height counts there.

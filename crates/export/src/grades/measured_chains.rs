@@ -98,7 +98,7 @@ impl<'a> MeasuredChains<'a> {
         let manifest = places.manifest;
         let frame = &manifest.frame;
         // What lies beyond the bounds has a part in what lies within.
-        let plan = plan.of_whole_data();
+        let plan = if plan.clip.is_some() { plan.of_whole_data() } else { plan.clone() };
         let nodes = &mut DemNodes::new(Elevation { dem, plan: &plan }, frame);
         let chains = Chains::of(network, Breaks::JunctionsAndStructures);
         let lengths = chains.lengths(network, &places.metric());
