@@ -10,13 +10,12 @@ use corniche_work::Observer;
 use crate::{
     cut::polygons_of,
     cut_polygon::{Rings, cut_polygon_at_bounds, rings_of},
-    error::{FeaturesError, SelectionError, TileError},
-    feature::text,
-    feature_request::FeatureRequest,
-    features::{About, FeatureSource, Features, write_features},
+    error::{FeaturesError, SelectionError},
+    features::{About, FeatureRequest, FeatureSource, Features, write_features},
     places::Places,
     plan_piece::{PlanPiece, class_of, lines_of},
-    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, fields},
+    read,
+    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, fields, fields_of, text},
 };
 
 /// What was exported.
@@ -46,15 +45,15 @@ struct AreaFeature<'a> {
     points: usize,
 }
 
-fields! { FIELDS, values, area: &AreaFeature<'_>:
-    "object", Text, "", "`way` or `relation` of OpenStreetMap", Value::Text(area.object.parts().0.to_owned());
-    "id", Integer64, "", "its id", Value::Integer(area.object.parts().1);
-    "class", Text, "", "class of the area, such as `water`", Value::Text(area.class.name().to_owned());
+fields! { FIELDS, area: &AreaFeature<'_>:
+    "object", Text, "", "`way` or `relation` of OpenStreetMap", area.object.parts().0;
+    "id", Integer64, "", "its id", area.object.parts().1;
+    "class", Text, "", "class of the area, such as `water`", area.class.name();
     "name", Text, "", "OSM's `name`; null without", text(area.name);
     "area_m2", Real, "m²", "true area on the ellipsoid of WGS84, of what the package has of it",
-        Value::Real((area.area_m2 * 1e3).round() / 1e3);
-    "polygons", Integer, "", "number of polygons", Value::Integer(area.polygons as i64);
-    "points", Integer, "", "points of all rings, the closing ones not counted", Value::Integer(area.points as i64);
+        (area.area_m2 * 1e3).round() / 1e3;
+    "polygons", Integer, "", "number of polygons", area.polygons as i64;
+    "points", Integer, "", "points of all rings, the closing ones not counted", area.points as i64;
 }
 
 /// Writes the areas of a package to a new file at `path`: a feature for each object, joined again over borders of tiles. Beside
@@ -69,10 +68,7 @@ pub fn export_areas(
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<AreasSummary, FeaturesError> {
-    if package.manifest().areas.is_none() {
-        let package = package.path().to_path_buf();
-        return Err(SelectionError::NoLayer { package, layer: NAME }.into());
-    }
+    SelectionError::check_layer(package, NAME, package.manifest().areas.as_ref())?;
     let source = FeatureSource::new(package, request)?;
     let level = source.level;
     let summary =
@@ -109,7 +105,7 @@ impl Features for Areas {
 
     fn about(&self, source: &FeatureSource<'_, AreaClass>) -> About {
         About {
-            fields: FIELDS.to_vec(),
+            fields: fields_of(FIELDS),
             description: format!("Areas, as they are stored for {}.", source.cells()),
             metadata: Vec::new(),
         }
@@ -120,9 +116,8 @@ impl Features for Areas {
         FeatureSource { package, request, .. }: &FeatureSource<'_, AreaClass>,
         tile: TileId,
     ) -> Result<Vec<PlanPiece>, FeaturesError> {
-        let Some(bytes) = package.tile(tile)? else { return Ok(Vec::new()) };
-        let areas = decode_areas(&bytes, tile, &package.manifest().frame)
-            .map_err(|source| TileError::Damaged { layer: NAME, source: Box::new(source) })?;
+        let frame = &package.manifest().frame;
+        let areas = read::layer(package, tile, NAME, |bytes| decode_areas(bytes, tile, frame))?;
         let wanted = areas.into_iter().filter(|area| request.classes.contains(&area.class));
         Ok(wanted
             .map(|area| PlanPiece {
@@ -178,7 +173,8 @@ impl Features for Areas {
         self.summary.unjoined += u64::from(!is_joined);
         let feature =
             AreaFeature { object, class, name: &pieces[0].name, area_m2, polygons: count, points };
-        Ok(vec![Record { values: values(&feature), shape: Shape::Polygons(shape) }])
+        let values = FIELDS.iter().map(|(_, value)| value(&feature)).collect();
+        Ok(vec![Record { values, shape: Shape::Polygons(shape) }])
     }
 }
 
@@ -195,5 +191,5 @@ fn joined(pieces: &[PlanPiece]) -> (Vec<Polygon>, bool) {
 
 /// True area inside a ring of positions in working metres, square metres; negative for a clockwise one.
 fn area_of(ring: &[[f64; 2]], places: &Places<'_>) -> f64 {
-    places.manifest().coordinates.ring_area_m2(ring)
+    places.manifest.coordinates.ring_area_m2(ring)
 }

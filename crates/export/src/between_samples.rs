@@ -60,20 +60,16 @@ impl TileCells<'_> {
     pub(crate) fn bound_m(&mut self, line: &[Vertex]) -> f64 {
         let mut most_m = 0.0_f64;
         for [from, to] in line.array_windows::<2>() {
-            let run = [to.at[0] - from.at[0], to.at[1] - from.at[1]];
-            let axis = usize::from(run[1].abs() > run[0].abs());
             let mut begin = from.at;
             for [middle, end] in places_between(from.at, to.at, self.steps) {
                 let cell = [0, 1].map(|axis| (middle[axis] / self.steps[axis]).floor());
                 let corners_m = self.corners_m(cell);
                 let off_m = |at: [f64; 2]| {
-                    let share = (at[axis] - from.at[axis]) / run[axis];
-                    let share = if share.is_finite() { share } else { 0.0 };
                     let [across, along] =
                         [0, 1].map(|axis| at[axis] / self.steps[axis] - cell[axis]);
                     let [sw, se, nw, ne] = corners_m;
                     let (south, north) = (sw + across * (se - sw), nw + across * (ne - nw));
-                    from.z_m + share * (to.z_m - from.z_m) - south - along * (north - south)
+                    from.height_m_at(*to, at) - south - along * (north - south)
                 };
                 // NaN leaves it as it is.
                 most_m = most_m.max(largest_of_parabola(off_m(begin), off_m(middle), off_m(end)));

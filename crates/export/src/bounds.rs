@@ -50,12 +50,8 @@ impl DegreeBounds {
         } else {
             [center - self.half_width, center + self.half_width]
         };
-        Bounds {
-            min_x: whole.min_x.max(west),
-            min_y: whole.min_y.max(self.south),
-            max_x: whole.max_x.min(east),
-            max_y: whole.max_y.min(self.north),
-        }
+        let own = Bounds { min_x: west, min_y: self.south, max_x: east, max_y: self.north };
+        intersection(whole, own)
     }
 
     /// The longitude, within ±180, and the latitude of its middle.
@@ -124,10 +120,30 @@ impl DegreeBounds {
     }
 }
 
+/// What two rectangles have in common; with its sides exchanged where that is nothing.
+pub(crate) fn intersection(one: Bounds, other: Bounds) -> Bounds {
+    Bounds {
+        min_x: one.min_x.max(other.min_x),
+        min_y: one.min_y.max(other.min_y),
+        max_x: one.max_x.min(other.max_x),
+        max_y: one.max_y.min(other.max_y),
+    }
+}
+
+/// A rectangle with a margin on all sides.
+pub(crate) fn expanded(bounds: Bounds, margin: f64) -> Bounds {
+    Bounds {
+        min_x: bounds.min_x - margin,
+        min_y: bounds.min_y - margin,
+        max_x: bounds.max_x + margin,
+        max_y: bounds.max_y + margin,
+    }
+}
+
 /// What of a line lies between limits, low and high along both axes, as shares of it; nothing where that is one point.
 ///
 /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
-fn clip(from: [f64; 2], to: [f64; 2], limits: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+pub(crate) fn clip(from: [f64; 2], to: [f64; 2], limits: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
     for (axis, [low, high]) in limits.into_iter().enumerate() {
         let along = to[axis] - from[axis];

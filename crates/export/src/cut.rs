@@ -6,6 +6,7 @@ use corniche_geom::{LatticePoint, Seam};
 use crate::{
     bounds::DegreeBounds,
     piece::{Piece, PieceKey, Vertex},
+    plane,
 };
 
 /// What the bounds leave of a piece; see [`cut_line_at_bounds`]. Nothing goes on from a new end.
@@ -87,12 +88,11 @@ fn shares_inside(
     of: [f64; 2],
     parts: &mut Vec<[f64; 2]>,
 ) {
-    let mean = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|axis| f64::midpoint(a[axis], b[axis]));
-    let middle = mean(from, to);
+    let middle = plane::middle(from, to);
     let middle_deg = wgs84(middle);
     let [start, length] = [of[0], of[1] - of[0]];
     let first = bounds.relative(from_deg);
-    let [east, north] = mean(first, bounds.relative_after(to_deg, first));
+    let [east, north] = plane::middle(first, bounds.relative_after(to_deg, first));
     let [is_east, is_north] = bounds.relative_after(middle_deg, first);
     let is_bent = (is_east - east).hypot(is_north - north) > STRAIGHT_DEG;
     if is_bent && length > LEAST_SHARE {
@@ -116,17 +116,10 @@ fn shares_inside(
 
 /// The vertex at a share of the way from one to the next; at its ends these themselves.
 fn between(from: Vertex, to: Vertex, share: f64) -> Vertex {
-    if share <= 0.0 {
-        return from;
-    }
-    if share >= 1.0 {
-        return to;
-    }
-    let mix = |a: f64, b: f64| a + share * (b - a);
-    Vertex {
-        at: [mix(from.at[0], to.at[0]), mix(from.at[1], to.at[1])],
-        z_m: mix(from.z_m, to.z_m),
-        is_source: false,
+    match share {
+        ..=0.0 => from,
+        1.0.. => to,
+        _ => from.towards(to, share),
     }
 }
 

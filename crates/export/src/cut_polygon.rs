@@ -9,13 +9,14 @@ use crate::{
     bounds::DegreeBounds,
     cut::{STEPS, STRAIGHT_DEG, polygons_of},
     places::Places,
+    plane,
 };
 
 /// A polygon as rings of positions in working metres, the outer one first.
 pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
 
 /// A corner: where it is in working metres, and in degrees as [`DegreeBounds::relative`] has them.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 struct Corner {
     at_m: [f64; 2],
     at_deg: [f64; 2],
@@ -25,7 +26,7 @@ struct Corner {
 
 /// The rings of a polygon of the package.
 pub(crate) fn rings_of(polygon: &Polygon, places: &Places<'_>) -> Rings {
-    let frame = &places.manifest().frame;
+    let frame = &places.manifest.frame;
     let position = |point: &LatticePoint| frame.position_m(*point);
     polygon.rings().map(|ring| ring.points().iter().map(position).collect()).collect()
 }
@@ -91,7 +92,7 @@ struct Cutting<'a> {
 impl Cutting<'_> {
     /// The corners of a ring with those between where its lines are bent in degrees. Longitudes run on from `first`, the polygon's first corner.
     fn corners(&self, ring: &[[f64; 2]], first: &mut Option<[f64; 2]>) -> Option<Vec<Corner>> {
-        let coordinates = &self.places.manifest().coordinates;
+        let coordinates = &self.places.manifest.coordinates;
         let after = |at_m: [f64; 2], before: Option<[f64; 2]>| {
             let deg = coordinates.wgs84_from_working(at_m);
             let at_deg = match before {
@@ -107,7 +108,7 @@ impl Cutting<'_> {
             let from = *corners.last()?;
             let to = after(at_m, Some(from.at_deg));
             let middle = |from: Corner, to: Corner| {
-                let between = after(mean(from.at_m, to.at_m), Some(from.at_deg));
+                let between = after(plane::middle(from.at_m, to.at_m), Some(from.at_deg));
                 Some(Corner { is_between: true, ..between })
             };
             add_between([from, to], &middle, LINE_HALVINGS, &mut corners);
@@ -136,7 +137,7 @@ impl Cutting<'_> {
             Some(Corner { at_m, at_deg, is_between: false })
         };
         let middle = |from: Corner, to: Corner| {
-            let at_deg = mean(from.at_deg, to.at_deg);
+            let at_deg = plane::middle(from.at_deg, to.at_deg);
             Some(Corner { at_m: self.position_m(at_deg)?, at_deg, is_between: true })
         };
         let mut corners = Vec::new();
@@ -157,7 +158,7 @@ impl Cutting<'_> {
 
     /// The position of a place in degrees from the middle of the bounds. Longitudes of a package may run on past 180.
     fn position_m(&self, [east, lat]: [f64; 2]) -> Option<[f64; 2]> {
-        let manifest = self.places.manifest();
+        let manifest = self.places.manifest;
         let lon = self.bounds.middle()[0] + east;
         let data = manifest.whole_data_bounds();
         let places = [0.0, 360.0, -360.0, 720.0, -720.0]
@@ -184,17 +185,13 @@ fn add_between(
 ) {
     let Some(between) = middle(from, to).filter(|_| halvings > 0) else { return };
     let away = |at: [f64; 2], mean: [f64; 2]| (at[0] - mean[0]).hypot(at[1] - mean[1]);
-    if away(between.at_m, mean(from.at_m, to.at_m)) > STRAIGHT_M
-        || away(between.at_deg, mean(from.at_deg, to.at_deg)) > STRAIGHT_DEG
+    if away(between.at_m, plane::middle(from.at_m, to.at_m)) > STRAIGHT_M
+        || away(between.at_deg, plane::middle(from.at_deg, to.at_deg)) > STRAIGHT_DEG
     {
         add_between([from, between], middle, halvings - 1, corners);
         corners.push(between);
         add_between([between, to], middle, halvings - 1, corners);
     }
-}
-
-fn mean(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
-    [0, 1].map(|axis| f64::midpoint(from[axis], to[axis]))
 }
 
 fn lattice_point(deg: [f64; 2]) -> LatticePoint {

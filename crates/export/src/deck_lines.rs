@@ -4,7 +4,10 @@ use corniche_roads::Structure;
 use corniche_spans::SpanKind;
 
 use crate::{
+    dem_ground::{DemLine, DemNodes, lay},
+    error::ElevationError,
     grades::{SmoothLine, Station, stretch_of_way},
+    measures::distances_m,
     piece::Vertex,
 };
 
@@ -13,10 +16,50 @@ const STRAIGHT_M: f64 = 1e-9;
 
 /// A line on its deck.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct RaisedLine {
-    pub(crate) vertices: Vec<Vertex>,
+struct RaisedLine {
+    vertices: Vec<Vertex>,
     /// Whether parts of it lie on the ground, which comes in the way of the deck there.
-    pub(crate) is_on_ground: bool,
+    is_on_ground: bool,
+}
+
+/// What may carry a line.
+pub(crate) struct Carrier<'a> {
+    pub(crate) structure: Structure,
+    /// The smooth lines of its way.
+    pub(crate) way: &'a [SmoothLine],
+    /// How far lines are from their way at most.
+    pub(crate) most_steps: f64,
+    /// Whether lines run against their way.
+    pub(crate) is_turned: bool,
+}
+
+/// Lays a line on the elevation files, and on its deck where that is known.
+pub(crate) fn lay_on_deck(
+    nodes: &mut DemNodes<'_>,
+    line: &[Vertex],
+    carrier: &Carrier<'_>,
+    distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64,
+) -> Result<Vec<DemLine>, ElevationError> {
+    let Carrier { structure, way, most_steps, is_turned } = *carrier;
+    let mut lines = lay(nodes, line)?;
+    for line in lines.iter_mut().filter(|_| structure != Structure::Ground) {
+        // Decks know the direction of their ways.
+        let along_way = |mut vertices: Vec<Vertex>| {
+            if is_turned {
+                vertices.reverse();
+            }
+            vertices
+        };
+        let ground = along_way(line.vertices.clone());
+        let raised = on_deck(structure, &ground, (way, most_steps), distance_m);
+        if let Some(RaisedLine { vertices, is_on_ground }) = raised {
+            line.vertices = along_way(vertices);
+            line.on_deck = true;
+            // A deck lies on the ground where that is in its way.
+            line.tolerance_m = line.tolerance_m.filter(|_| is_on_ground);
+        }
+    }
+    Ok(lines)
 }
 
 /// Puts a line of a bridge or a tunnel, which was laid on the ground, where its deck is: `way` are the decks of its way. A bridge never lies below
@@ -27,20 +70,15 @@ pub(crate) struct RaisedLine {
 ///      ╱  ╲          ╱ ╲
 ///   ──●    ╲________╱   ●──
 /// ```
-pub(crate) fn on_deck(
+fn on_deck(
     structure: Structure,
     ground: &[Vertex],
     (way, most_steps): (&[SmoothLine], f64),
     distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64,
 ) -> Option<RaisedLine> {
     let kind = SpanKind::of(structure)?;
-    let mut along_m = Vec::with_capacity(ground.len());
-    let mut length_m = 0.0;
-    along_m.push(length_m);
-    for [from, to] in ground.array_windows::<2>() {
-        length_m += distance_m(from.at, to.at);
-        along_m.push(length_m);
-    }
+    let along_m = distances_m(ground.iter().map(|vertex| vertex.at), distance_m);
+    let length_m = along_m.last().copied().unwrap_or_default();
     let [from_m, to_m] = stretch_of_way(way, ground, length_m, most_steps)?;
     let deck = way.iter().find(|line| line.reaches([from_m, to_m]))?;
     // Lines that are simplified are shorter than their ways; ends lie at their places to the bit.
@@ -56,7 +94,7 @@ pub(crate) fn on_deck(
         while let (Some(from), Some(bend)) = (before, bends.next_if(|bend| bend.along_m < at_m)) {
             let share = (bend.along_m - from.along_m) / (at_m - from.along_m);
             if share > 0.0 {
-                let ground = between(from.ground, *vertex, share);
+                let ground = from.ground.towards(*vertex, share);
                 places.push(OverGround { along_m: bend.along_m, ground, deck_m: bend.ground_m });
             }
         }
@@ -72,7 +110,7 @@ pub(crate) fn on_deck(
         {
             let share = from_over_m / (from_over_m - over_m);
             let along_m = from.along_m + share * (place.along_m - from.along_m);
-            all.push((along_m, between(from.ground, place.ground, share)));
+            all.push((along_m, from.ground.towards(place.ground, share)));
         }
         let z_m = if over_m > 0.0 { place.deck_m } else { place.ground.z_m };
         all.push((place.along_m, Vertex { z_m, ..place.ground }));
@@ -88,13 +126,6 @@ struct OverGround {
     along_m: f64,
     ground: Vertex,
     deck_m: f64,
-}
-
-/// A place on the ground between two others, which is no point of the way.
-fn between(from: Vertex, to: Vertex, share: f64) -> Vertex {
-    let mix = |from: f64, to: f64| from + share * (to - from);
-    let at = [0, 1].map(|axis| mix(from.at[axis], to.at[axis]));
-    Vertex { at, z_m: mix(from.z_m, to.z_m), is_source: false }
 }
 
 /// The vertices without those that are no points of the way, and at which the line is straight.

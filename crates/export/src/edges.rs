@@ -14,26 +14,27 @@ use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage};
 
 use crate::{
-    deck_lines::{RaisedLine, on_deck},
-    dem_ground::{DemLine, DemNodes, lay},
+    deck_lines::{Carrier, lay_on_deck},
+    dem_ground::{DemLine, DemNodes},
     error::{ElevationError, FeaturesError},
-    feature::{oneway, real, text},
-    feature_request::FeatureRequest,
-    features::{About, FeatureSource},
-    grades::{GRADE_LENGTH_M, MeasuredChains, Smoothing},
+    feature::oneway,
+    features::{About, FeatureRequest, FeatureSource},
+    grades::{GRADE_LENGTH_M, MeasuredChains},
     heights::{Elevation, dem_heights},
-    join::Line,
-    measures::{Profiled, steepest},
-    piece::Vertex,
+    measures::{ProfileGrades, profile_of},
+    piece::{Vertex, larger},
     road_query::{RoadQuery, named_ways},
     span_facts::SpanFacts,
-    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, VectorFile, fields},
+    vector::{
+        Field, FieldKind, Record, Shape, ShapeKind, Value, VectorFile, fields, fields_of, real,
+        text,
+    },
 };
 
 /// Lines of a network lie on its ways: half a metre allows for nothing but rounding.
 const NEAR_STEPS: f64 = 500.0;
 /// Edges are told of after so many.
-const TOLD_EDGES: u64 = 1024;
+const TOLD_EDGES: usize = 1024;
 
 /// What was exported.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,9 +60,9 @@ struct Edge<'a> {
     ends: [Option<i64>; 2],
     ways: String,
     shares: Shares<'a>,
-    profile: Option<Vec<[f64; 2]>>,
-    /// Heights of the nodes that other edges share.
-    nodes_m: [Option<f64>; 2],
+    grades: Option<ProfileGrades>,
+    /// At its nodes, as other edges share them, or of its own line where it is alone there.
+    heights_m: [Option<f64>; 2],
 }
 
 /// What an edge is made of, by length in metres.
@@ -75,28 +76,28 @@ struct Shares<'a> {
     oneways: Vec<Oneway>,
 }
 
-fields! { FIELDS, values, edge: &Edge<'_>:
-    "from_node", Integer64, "", "id of the node where it begins; null where a way is cut", node(edge.ends[0]);
-    "to_node", Integer64, "", "id of the node where it ends; null where a way is cut", node(edge.ends[1]);
+fields! { FIELDS, edge: &Edge<'_>:
+    "from_node", Integer64, "", "id of the node where it begins; null where a way is cut", edge.ends[0];
+    "to_node", Integer64, "", "id of the node where it ends; null where a way is cut", edge.ends[1];
     "ways", Text, "", "ids of its ways in their order, each with `f` where the edge runs along the way and `b` where it runs against it",
-        Value::Text(edge.ways.clone());
+        edge.ways.as_str();
     "class", Integer, "", "functional road class of the largest part",
-        edge.shares.largest().0.map_or(Value::Null, |class| Value::Integer(class.number().into()));
+        edge.shares.largest().0.map(|class| i64::from(class.number()));
     "highway", Text, "", "OSM's `highway` of the largest part", text(edge.shares.largest().1);
     "oneway", Text, "", "`yes` (from the first to the last node), `-1` (against it), `no`, or `mixed`",
-        Value::Text(edge.shares.oneway().to_owned());
+        edge.shares.oneway();
     "length_m", Real, "m", "true length in plan, on the ellipsoid of WGS84", real(edge.shares.length_m);
     "ascent_m", Real, "m", "sum of all that the smooth line rises from the first to the last node; null where a height is not known",
-        optional(edge.ascent_m());
-    "descent_m", Real, "m", "sum of all that it falls from the first to the last node", optional(edge.descent_m());
-    "ascent_back_m", Real, "m", "sum of all that it rises on the way back", optional(edge.descent_m());
-    "descent_back_m", Real, "m", "sum of all that it falls on the way back", optional(edge.ascent_m());
-    "weighted_grade_pct", Real, "%", "size of the grade, up or down, weighted by length", optional(edge.weighted_pct());
+        edge.grades.map(|grades| real(grades.ascent_m));
+    "descent_m", Real, "m", "sum of all that it falls from the first to the last node", edge.grades.map(|grades| real(grades.descent_m));
+    "ascent_back_m", Real, "m", "sum of all that it rises on the way back", edge.grades.map(|grades| real(grades.descent_m));
+    "descent_back_m", Real, "m", "sum of all that it falls on the way back", edge.grades.map(|grades| real(grades.ascent_m));
+    "weighted_grade_pct", Real, "%", "size of the grade, up or down, weighted by length", edge.weighted_pct().map(real);
     "steepest_pct", Real, "%", "steepest grade over 50 m or more, up or down; null where it is shorter",
-        optional(edge.steepest_pct());
+        edge.grades.and_then(|grades| grades.steepest).map(|grade| real(100.0 * grade));
     "from_height_m", Real, "m", "height of the smooth line at the first node: the same for all edges there, but of a way that only touches a deck its own",
-        optional(edge.height_m(0));
-    "to_height_m", Real, "m", "height of the smooth line at the last node", optional(edge.height_m(1));
+        edge.heights_m[0].map(real);
+    "to_height_m", Real, "m", "height of the smooth line at the last node", edge.heights_m[1].map(real);
     "bridge_share", Real, "", "part of its length on bridges, 0 to 1", real(edge.shares.share(edge.shares.bridge_m));
     "tunnel_share", Real, "", "part of its length in tunnels, 0 to 1", real(edge.shares.share(edge.shares.tunnel_m));
 }
@@ -104,7 +105,7 @@ fields! { FIELDS, values, edge: &Edge<'_>:
 /// The fields of edges, in their order.
 #[must_use]
 pub fn edge_fields() -> Vec<Field> {
-    FIELDS.to_vec()
+    fields_of(FIELDS)
 }
 
 /// Writes the edges of a network to a new file at `path`: each is there once, from the node with the smaller id. Their lines lie on the elevation
@@ -125,14 +126,14 @@ pub fn export_edges(
     let frame = &package.manifest().frame;
     // Edges that reach the package's data are whole.
     let plan = elevation.plan.of_whole_data();
-    let mut nodes = DemNodes::new(Elevation { plan: &plan, ..elevation }, frame);
-    let smoothing = Smoothing::of_frame(frame);
+    let elevation = Elevation { plan: &plan, ..elevation };
+    let mut nodes = DemNodes::new(elevation, frame);
     let places = &source.places;
-    let measured = MeasuredChains::measure(network, places, &mut nodes, smoothing, observer)?;
+    let measured = MeasuredChains::measure(network, places, elevation, observer)?;
     let about = About {
         fields: edge_fields(),
-        description: format!("Roads from junction to junction. Heights: {}.", places.heights()),
-        metadata: vec![("HEIGHTS", places.heights().to_owned())],
+        description: format!("Roads from junction to junction. Heights: {}.", places.heights),
+        metadata: vec![("HEIGHTS", places.heights.clone())],
     };
     let layer = source.layer("edges", ShapeKind::Lines, about);
     let mut file = VectorFile::create(path, request.format, layer)?;
@@ -141,9 +142,9 @@ pub fn export_edges(
         without_ground: 0,
         without_ascent: 0,
         length_m: 0.0,
-        heights: places.heights().to_owned(),
+        heights: places.heights.clone(),
         height_tolerance_m: 0.0,
-        spans: measured.span_facts().clone(),
+        spans: measured.decks.facts.clone(),
     };
     let edges = Chains::of(network, Breaks::Junctions);
     let mut numbers: Vec<ChainNumber> = edges.numbers().collect();
@@ -151,42 +152,46 @@ pub fn export_edges(
         let is_meant = |link: &Link| named.meant.contains(&network.way_of(*link).way_id);
         numbers.retain(|&number| edges.get(number).links.iter().any(is_meant));
     }
-    let all = numbers.len() as u64;
-    observer.begin(Stage::ExportFeatures, Some(all));
-    let mut told = 0;
-    for (done, number) in (1..).zip(numbers) {
-        if done % TOLD_EDGES == 0 || done == all {
-            observer.check()?;
-            observer.advance(Stage::ExportFeatures, done - told);
-            told = done;
+    observer.begin(Stage::ExportFeatures, Some(numbers.len() as u64));
+    for some in numbers.chunks(TOLD_EDGES) {
+        observer.check()?;
+        for &number in some {
+            let chain = edges.get(number);
+            if !measured.reaches(&chain) {
+                continue;
+            }
+            let LaidEdge { lines, decks } = laid(&measured, &mut nodes, &chain)?;
+            if lines.is_empty() {
+                summary.without_ground += 1;
+                continue;
+            }
+            let profile = measured.profile(chain.links, &decks);
+            let nodes_m = node_heights(&measured, &chain);
+            let own_m = |place: Option<&[f64; 2]>| place.map(|&[_, height_m]| height_m);
+            let own_m =
+                profile.as_ref().map(|profile| [profile.first(), profile.last()].map(own_m));
+            let own_m = own_m.unwrap_or_default();
+            let edge = Edge {
+                ends: chain.ends.map(|node| network.node_id(node)),
+                ways: ways_text(network, &chain),
+                shares: Shares::of(&measured, &chain),
+                grades: profile.as_deref().map(grades_of),
+                heights_m: [0, 1].map(|end| nodes_m[end].or(own_m[end])),
+            };
+            summary.edges += 1;
+            summary.length_m += edge.shares.length_m;
+            summary.without_ascent += u64::from(edge.grades.is_none());
+            let object = AreaObject::Way(network.way_of(chain.links[0]).way_id);
+            let mut carried = Vec::new();
+            for line in lines {
+                summary.height_tolerance_m =
+                    summary.height_tolerance_m.max(line.tolerance_m.unwrap_or(0.0));
+                carried.extend(places.carry(object, &line.vertices)?);
+            }
+            let values = FIELDS.iter().map(|(_, value)| value(&edge)).collect();
+            file.push(Record { values, shape: Shape::Lines(carried) })?;
         }
-        let chain = edges.get(number);
-        if !measured.reaches(&chain) {
-            continue;
-        }
-        let LaidEdge { lines, decks } = laid(&measured, &mut nodes, &chain)?;
-        if lines.is_empty() {
-            summary.without_ground += 1;
-            continue;
-        }
-        let edge = Edge {
-            ends: chain.ends.map(|node| network.node_id(node)),
-            ways: ways_text(network, &chain),
-            shares: Shares::of(&measured, &chain),
-            profile: measured.profile(chain.links, &decks),
-            nodes_m: node_heights(&measured, &chain),
-        };
-        summary.edges += 1;
-        summary.length_m += edge.shares.length_m;
-        summary.without_ascent += u64::from(edge.profile.is_none());
-        let object = AreaObject::Way(network.way_of(chain.links[0]).way_id);
-        let mut carried = Vec::new();
-        for line in lines {
-            summary.height_tolerance_m =
-                summary.height_tolerance_m.max(line.tolerance_m.unwrap_or(0.0));
-            carried.extend(places.carry(object, &line.vertices)?);
-        }
-        file.push(Record { values: values(&edge), shape: Shape::Lines(carried) })?;
+        observer.advance(Stage::ExportFeatures, some.len() as u64);
     }
     file.tell_heights(dem_heights(summary.height_tolerance_m, true));
     file.finish()?;
@@ -206,8 +211,8 @@ fn laid(
     nodes: &mut DemNodes<'_>,
     chain: &Chain<'_>,
 ) -> Result<LaidEdge, ElevationError> {
-    let network = measured.network();
-    let distance_m = |from: [f64; 2], to: [f64; 2]| measured.places().distance_m(from, to);
+    let network = measured.network;
+    let distance_m = measured.places.metric();
     let mut lines: Vec<DemLine> = Vec::new();
     let mut decks = HashMap::new();
     let mut first_link = 0;
@@ -215,39 +220,20 @@ fn laid(
         let [one, other] = [one, other].map(|link| network.way_of(*link).structure);
         one == Structure::Ground && other == Structure::Ground
     }) {
-        let mut points: Vec<LatticePoint> = Vec::new();
-        for &link in links {
-            points.extend(network.points_of_link(link).skip(usize::from(!points.is_empty())));
-        }
         let vertex =
             |point: LatticePoint| Vertex { at: point.in_steps(), z_m: f64::NAN, is_source: true };
+        let points = network.points_of_chain(&Chain { links, ..*chain });
         let line: Vec<Vertex> = points.into_iter().map(vertex).collect();
         let structure = network.way_of(links[0]).structure;
-        let deck = match structure {
+        let way = match structure {
             Structure::Ground => Vec::new(),
             _ => measured.of_link(links[0]),
         };
-        for mut own in lay(nodes, &line)? {
-            if structure != Structure::Ground {
-                // Decks know the direction of their ways.
-                let turn = |vertices: &mut Vec<Vertex>| {
-                    if links[0].is_against {
-                        vertices.reverse();
-                    }
-                };
-                turn(&mut own.vertices);
-                let raised = on_deck(structure, &own.vertices, (&deck, NEAR_STEPS), &distance_m);
-                let is_raised = raised.is_some();
-                if let Some(RaisedLine { vertices, is_on_ground }) = raised {
-                    own.vertices = vertices;
-                    // A deck lies on the ground where that is in its way.
-                    own.tolerance_m = own.tolerance_m.filter(|_| is_on_ground);
-                }
-                turn(&mut own.vertices);
-                if is_raised && own.has_end == [true; 2] {
-                    let line = Line { vertices: own.vertices.clone(), joins: Vec::new() };
-                    decks.insert(first_link, Profiled::of(&line, &distance_m).profile);
-                }
+        let is_turned = links[0].is_against;
+        let carrier = Carrier { structure, way: &way, most_steps: NEAR_STEPS, is_turned };
+        for own in lay_on_deck(nodes, &line, &carrier, &distance_m)? {
+            if own.on_deck && own.has_end == [true; 2] {
+                decks.insert(first_link, profile_of(&own.vertices, &distance_m));
             }
             let ends = lines.last().and_then(|line| line.vertices.last());
             let goes_on = own.has_end[0]
@@ -255,10 +241,7 @@ fn laid(
             match lines.last_mut().filter(|line| goes_on && line.has_end[1]) {
                 Some(before) => {
                     before.vertices.extend(own.vertices.into_iter().skip(1));
-                    before.tolerance_m = [before.tolerance_m, own.tolerance_m]
-                        .into_iter()
-                        .flatten()
-                        .reduce(f64::max);
+                    before.tolerance_m = larger(before.tolerance_m, own.tolerance_m);
                     before.has_end[1] = own.has_end[1];
                 }
                 None => lines.push(own),
@@ -269,57 +252,26 @@ fn laid(
     Ok(LaidEdge { lines, decks })
 }
 
+/// The grades of an edge. Files have had −0 for what a level edge falls.
+fn grades_of(profile: &[[f64; 2]]) -> ProfileGrades {
+    let falls = profile.array_windows().map(|[from, to]| (-(to[1] - from[1])).max(0.0));
+    ProfileGrades { descent_m: falls.sum(), ..ProfileGrades::of([profile], GRADE_LENGTH_M) }
+}
+
 /// The heights of both nodes that other edges share; none on a bridge or in a tunnel, whose own height counts there.
 fn node_heights(measured: &MeasuredChains<'_>, chain: &Chain<'_>) -> [Option<f64>; 2] {
-    let structure =
-        |link: Option<&Link>| link.map(|link| measured.network().way_of(*link).structure);
+    let structure = |link: Option<&Link>| link.map(|link| measured.network.way_of(*link).structure);
     let links = [chain.links.first(), chain.links.last()];
     let is_on_ground = links.map(|link| structure(link) == Some(Structure::Ground));
     [0, 1].map(|end| measured.node_m(chain.ends[end]).filter(|_| is_on_ground[end]))
 }
 
 impl Edge<'_> {
-    fn ascent_m(&self) -> Option<f64> {
-        self.rises_m(1.0)
-    }
-
-    fn descent_m(&self) -> Option<f64> {
-        self.rises_m(-1.0)
-    }
-
-    /// Metres upwards, all of them together; with the sign −1 downwards.
-    fn rises_m(&self, sign: f64) -> Option<f64> {
-        let rise = |pair: &[[f64; 2]; 2]| (sign * (pair[1][1] - pair[0][1])).max(0.0);
-        self.profile.as_ref().map(|profile| profile.array_windows().map(rise).sum())
-    }
-
     fn weighted_pct(&self) -> Option<f64> {
-        let both_m = self.ascent_m()? + self.descent_m()?;
+        let grades = self.grades?;
         let length_m = self.shares.length_m;
-        (length_m > 0.0).then(|| 100.0 * both_m / length_m)
+        (length_m > 0.0).then(|| 100.0 * (grades.ascent_m + grades.descent_m) / length_m)
     }
-
-    fn steepest_pct(&self) -> Option<f64> {
-        steepest(self.profile.as_ref()?, GRADE_LENGTH_M).map(|grade| 100.0 * grade)
-    }
-
-    /// The height at an end: that of its node, or of its own line where it is alone there.
-    fn height_m(&self, end: usize) -> Option<f64> {
-        let own = || {
-            let profile = self.profile.as_ref()?;
-            let place = if end == 0 { profile.first() } else { profile.last() };
-            place.map(|place| place[1])
-        };
-        self.nodes_m[end].or_else(own)
-    }
-}
-
-fn node(id: Option<i64>) -> Value {
-    id.map_or(Value::Null, Value::Integer)
-}
-
-fn optional(value: Option<f64>) -> Value {
-    value.map_or(Value::Null, real)
 }
 
 /// The ways of an edge, each once in a row, with their directions.
@@ -338,7 +290,7 @@ fn ways_text(network: &Network, chain: &Chain<'_>) -> String {
 
 impl<'a> Shares<'a> {
     fn of(measured: &MeasuredChains<'a>, chain: &Chain<'_>) -> Self {
-        let network = measured.network();
+        let network = measured.network;
         let mut shares = Self::default();
         for &link in chain.links {
             let (way, own_m) = (network.way_of(link), measured.link_m(link));

@@ -146,6 +146,16 @@ impl SelectionError {
         Self::NoGround { package: package.path().to_path_buf() }
     }
 
+    /// Fails where a package lacks a layer that is asked for.
+    pub(crate) fn check_layer<T>(
+        package: &FilePackage,
+        layer: &'static str,
+        found: Option<&T>,
+    ) -> Result<(), Self> {
+        let missing = || Self::NoLayer { package: package.path().to_path_buf(), layer };
+        found.map(drop).ok_or_else(missing)
+    }
+
     /// Fails where a package was built without an extract.
     pub(crate) fn check_roads(package: &FilePackage) -> Result<(), Self> {
         if package.manifest().has_extract() {
@@ -224,6 +234,12 @@ pub enum CoordinatesError {
         "{object} lies across 180 degrees of longitude and cannot be cut there; export it in the package's CRS"
     )]
     AcrossAntimeridian { object: AreaObject },
+}
+
+impl From<CrsError> for CoordinatesError {
+    fn from(source: CrsError) -> Self {
+        Self::Crs(Box::new(source))
+    }
 }
 
 activity! {

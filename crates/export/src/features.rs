@@ -4,19 +4,44 @@ use std::path::Path;
 
 use corniche_areas::AreaObject;
 use corniche_geom::TileId;
-use corniche_store::{SortRecord, Sorter};
+use corniche_store::SortRecord;
 use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage};
 
 use crate::{
+    bounds::DegreeBounds,
     error::FeaturesError,
-    feature_request::{Coordinates, FeatureRequest},
-    places::Places,
+    places::{Coordinates, Places},
     read,
-    scratch::FileScratch,
-    sorted_pieces::SortedPieces,
+    sorted_pieces::{FileScratch, SortedPieces},
     vector::{Field, Layer, Record, ShapeKind, VectorFile, VectorFormat},
 };
+
+/// Which objects of a layer of a package are exported, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FeatureRequest<C> {
+    /// The format of the file.
+    pub format: VectorFormat,
+    /// The level whose objects are taken; `None` is the finest.
+    pub level: Option<u8>,
+    /// The classes that are taken.
+    pub classes: Vec<C>,
+    /// Objects are cut here.
+    pub bounds: Option<DegreeBounds>,
+    /// The coordinates of features; only roads have heights.
+    pub coordinates: Coordinates,
+    /// Memory for sorting, bytes.
+    pub memory_bytes: u64,
+}
+
+/// Which features roads become.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RoadFeatures {
+    /// One for each way.
+    Ways,
+    /// One for each piece, as the tiles have them.
+    Pieces,
+}
 
 /// Looks whether lines with heights can be had from a package as they are asked for, before anything is read.
 ///
@@ -109,7 +134,7 @@ impl<'a, C> FeatureSource<'a, C> {
         let crs = match (self.request.format, self.request.coordinates) {
             // GeoJSON names systems by their codes, or not at all: there is none for both parts of a compound one.
             (VectorFormat::GeoJson, Coordinates::Epsg(code)) => format!("EPSG:{code}"),
-            _ => places.crs().to_owned(),
+            _ => places.wkt.clone(),
         };
         let of_package = [
             ("GENERATOR", manifest.generator.clone()),
@@ -145,13 +170,11 @@ pub(crate) fn write_features<F: Features>(
     observer: &dyn Observer,
 ) -> Result<(), FeaturesError> {
     let FeatureSource { package, request, level, .. } = source;
-    let folder = corniche_store::folder_of(path);
-    let scratch = FileScratch::create(folder)
-        .map_err(|source| FeaturesError::Sort { folder: folder.to_path_buf(), source })?;
+    let scratch = FileScratch::create(corniche_store::folder_of(path))?;
     let tiles = read::tiles(package, *level, request.bounds.as_ref())?;
-    let sorter = (Sorter::new(&scratch, request.memory_bytes), folder);
+    let sorting = (&scratch, request.memory_bytes);
     let pieces =
-        SortedPieces::read(&tiles, sorter, observer, |tile| features.pieces(source, tile))?;
+        SortedPieces::read(&tiles, sorting, observer, |tile| features.pieces(source, tile))?;
     let layer = source.layer(features.name(), F::SHAPES, features.about(source));
     let mut file = VectorFile::create(path, request.format, layer)?;
     pieces.for_each(observer, F::object, |pieces| {

@@ -37,7 +37,7 @@ pub(crate) fn up_at(place_deg: [f64; 2]) -> [f64; 3] {
 }
 
 /// The frame in which all tiles are: east, north and up at its origin on the ellipsoid.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct RootFrame {
     origin_m: [f64; 3],
     axes: [[f64; 3]; 3],
@@ -90,6 +90,20 @@ pub(crate) fn between(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
 pub(crate) fn unit(vector: [f64; 3]) -> [f64; 3] {
     let length = dot(vector, vector).sqrt();
     vector.map(|axis| axis / length)
+}
+
+/// The least and the largest of some numbers.
+pub(crate) fn range_of(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    let nothing = [f64::INFINITY, f64::NEG_INFINITY];
+    numbers.fold(nothing, |[low, high], number| [low.min(number), high.max(number)])
+}
+
+/// The middle of the box around some places.
+pub(crate) fn middle_of(places: &(impl Iterator<Item = [f64; 3]> + Clone)) -> [f64; 3] {
+    [0, 1, 2].map(|axis| {
+        let [low, high] = range_of(places.clone().map(|at: [f64; 3]| at[axis]));
+        f64::midpoint(low, high)
+    })
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What all glTF files have in common: the binary container (a header, a document and one chunk of
+//! What all glTF files have in common: a document with the buffer that its views are of, the binary container (a header, a document and one chunk of
 //! bytes), numbers that glTF takes from OpenGL, and how slabs of bridges look.
 //!
 //! Source: Khronos Group, *glTF 2.0 Specification*, sections 3.6 and 4.4.
@@ -8,33 +8,153 @@ use std::io::{self, Write};
 use corniche_styles::Rgb;
 use serde_json::{Value, json};
 
-const HEADER_BYTES: u64 = 12;
-const CHUNK_HEADER_BYTES: u64 = 8;
+const HEADER_BYTES: usize = 12;
+const CHUNK_HEADER_BYTES: usize = 8;
 
 /// The length of a chunk is a multiple of this.
-pub(crate) const CHUNK_ALIGNMENT: usize = 4;
+const CHUNK_ALIGNMENT: usize = 4;
+/// Nothing needs more.
+const MOST_ALIGNMENT: usize = 8;
 
 /// Writes a binary glTF: its document, and `length` bytes, a multiple of [`CHUNK_ALIGNMENT`], that `put` writes.
 pub(crate) fn write_container<W: Write + ?Sized>(
     into: &mut W,
     document: &Value,
-    length: u64,
+    length: usize,
     put: impl FnOnce(&mut W) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut json = document.to_string().into_bytes();
     json.resize(json.len().next_multiple_of(CHUNK_ALIGNMENT), b' ');
-    let total = HEADER_BYTES + 2 * CHUNK_HEADER_BYTES + json.len() as u64 + length;
+    let total = HEADER_BYTES + 2 * CHUNK_HEADER_BYTES + json.len() + length;
     let too_large = |_| io::Error::new(io::ErrorKind::FileTooLarge, "a GLB ends at 4 GiB");
-    let number = |bytes: u64| u32::try_from(bytes).map(u32::to_le_bytes).map_err(too_large);
+    let number = |bytes: usize| u32::try_from(bytes).map(u32::to_le_bytes).map_err(too_large);
     into.write_all(b"glTF")?;
     into.write_all(&2_u32.to_le_bytes())?;
     into.write_all(&number(total)?)?;
-    into.write_all(&number(json.len() as u64)?)?;
+    into.write_all(&number(json.len())?)?;
     into.write_all(b"JSON")?;
     into.write_all(&json)?;
     into.write_all(&number(length)?)?;
     into.write_all(b"BIN\0")?;
     put(into)
+}
+
+/// A document as it grows, with its buffer.
+#[derive(Default)]
+pub(crate) struct Gltf<B> {
+    /// What the buffer is written to.
+    pub(crate) bytes: B,
+    /// Bytes of the buffer.
+    pub(crate) length: usize,
+    pub(crate) views: Vec<Value>,
+    accessors: Vec<Value>,
+    /// Textures have the same numbers.
+    images: Vec<Value>,
+}
+
+impl<B: Write> Gltf<B> {
+    pub(crate) fn new(bytes: B) -> Self {
+        let (views, accessors, images) = (Vec::new(), Vec::new(), Vec::new());
+        Self { bytes, length: 0, views, accessors, images }
+    }
+
+    /// What follows begins at a multiple of `alignment`, at most [`MOST_ALIGNMENT`].
+    pub(crate) fn align(&mut self, alignment: usize) -> io::Result<()> {
+        let end = self.length.next_multiple_of(alignment);
+        self.bytes.write_all(&[0; MOST_ALIGNMENT][..end - self.length])?;
+        self.length = end;
+        Ok(())
+    }
+
+    /// Appends bytes, and tells in `view` where they are.
+    pub(crate) fn put(&mut self, bytes: &[u8], view: &mut Value) -> io::Result<()> {
+        view["buffer"] = json!(0);
+        view["byteOffset"] = json!(self.length);
+        view["byteLength"] = json!(bytes.len());
+        self.bytes.write_all(bytes)?;
+        self.length += bytes.len();
+        self.align(CHUNK_ALIGNMENT)
+    }
+
+    /// Adds bytes, of which `view` says what they are; returns the number of the view.
+    pub(crate) fn view(&mut self, bytes: &[u8], mut view: Value) -> io::Result<usize> {
+        self.put(bytes, &mut view)?;
+        self.views.push(view);
+        Ok(self.views.len() - 1)
+    }
+
+    /// Adds what an accessor says of as many numbers of a view; returns its number.
+    pub(crate) fn accessor(&mut self, mut accessor: Value, view: usize, count: usize) -> usize {
+        accessor["bufferView"] = json!(view);
+        accessor["count"] = json!(count);
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    /// Adds numbers with a view and an accessor; returns the number of the accessor.
+    pub(crate) fn numbers<T: bytemuck::Pod>(
+        &mut self,
+        items: &[T],
+        view: Value,
+        accessor: Value,
+    ) -> io::Result<usize> {
+        // glTF is little-endian, as is every machine that this is compiled for.
+        const { assert!(cfg!(target_endian = "little")) };
+        let view = self.view(bytemuck::cast_slice(items), view)?;
+        Ok(self.accessor(accessor, view, items.len()))
+    }
+
+    /// Adds a picture, of which `image` says what it is; returns the number of its texture.
+    pub(crate) fn picture(&mut self, bytes: &[u8], mut image: Value) -> io::Result<usize> {
+        image["bufferView"] = json!(self.view(bytes, json!({}))?);
+        self.images.push(image);
+        Ok(self.images.len() - 1)
+    }
+
+    /// The whole document.
+    pub(crate) fn document(
+        &self,
+        asset: &Value,
+        (nodes, meshes): (&[Value], &[Value]),
+        materials: &[Value],
+    ) -> Value {
+        let mut document = json!({
+            "asset": asset,
+            "scene": 0,
+            "scenes": [{ "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
+            "nodes": nodes,
+            "meshes": meshes,
+            "materials": materials,
+            "accessors": self.accessors,
+            "bufferViews": self.views,
+            "buffers": [{ "byteLength": self.length }],
+        });
+        if !self.images.is_empty() {
+            let textures = 0..self.images.len();
+            document["samplers"] = json!([sampler()]);
+            document["textures"] =
+                textures.map(|source| json!({ "source": source, "sampler": 0 })).collect();
+            document["images"] = json!(self.images);
+        }
+        document
+    }
+}
+
+/// A material of one colour, sRGB.
+pub(crate) fn material(name: &str, color: Rgb) -> Value {
+    // Colours of styles are sRGB, those of glTF linear.
+    let [red, green, blue] = color.map(linear);
+    json!({
+        "name": name,
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [red, green, blue, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0,
+        },
+    })
+}
+
+/// East, north and up along the axes of glTF.
+pub(crate) fn y_up<T: std::ops::Neg<Output = T>>([east, north, up]: [T; 3]) -> [T; 3] {
+    [east, up, -north]
 }
 
 /// Target of a view of vertices.
@@ -68,7 +188,7 @@ const LINEAR_MIPMAP_LINEAR: u32 = 9987;
 const CLAMP_TO_EDGE: u32 = 33_071;
 
 /// How pictures of the ground are read: smoothly, and never across their edge.
-pub(crate) fn sampler() -> Value {
+fn sampler() -> Value {
     json!({
         "magFilter": LINEAR, "minFilter": LINEAR_MIPMAP_LINEAR,
         "wrapS": CLAMP_TO_EDGE, "wrapT": CLAMP_TO_EDGE,

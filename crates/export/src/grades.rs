@@ -16,5 +16,5 @@ mod span_decks;
 
 pub(crate) use measured_chains::MeasuredChains;
 pub(crate) use on_way::{most_steps, stretch_of_way};
-pub(crate) use smooth_line::{GRADE_LENGTH_M, SmoothGrades, SmoothLine, Station};
+pub(crate) use smooth_line::{GRADE_LENGTH_M, SmoothLine, Station, grades_of};
 pub(crate) use smoothing::Smoothing;

@@ -5,20 +5,17 @@ use std::path::Path;
 use corniche_areas::AreaObject;
 use corniche_geom::LatticeBounds;
 use corniche_roads::FunctionalRoadClass;
-use corniche_store::Sorter;
 use corniche_tileset::{FilePackage, Manifest, tile_of_order};
 use corniche_work::{Observer, Stage};
 
 use crate::{
     error::{FeaturesError, SelectionError},
-    feature_request::Coordinates,
     join::lines,
     measures::{Measures, Profiled},
     piece::{Piece, Vertex},
-    places::Places,
+    places::{Coordinates, Places},
     read,
-    scratch::FileScratch,
-    sorted_pieces::SortedPieces,
+    sorted_pieces::{FileScratch, SortedPieces},
 };
 
 /// What laying one way on the terrain costs.
@@ -51,12 +48,10 @@ pub fn growth_by_way<E: From<FeaturesError>>(
 ) -> Result<(), E> {
     let manifest = package.manifest();
     SelectionError::check_roads(package).map_err(FeaturesError::from)?;
-    let sort = |source| FeaturesError::Sort { folder: folder.to_path_buf(), source };
-    let scratch = FileScratch::create(folder).map_err(sort)?;
+    let scratch = FileScratch::create(folder)?;
     let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
     let tiles = package.tile_ids().map_err(FeaturesError::from)?;
-    let sorter = (Sorter::new(&scratch, memory_bytes), folder);
-    let pieces = SortedPieces::read(&tiles, sorter, observer, |id| {
+    let pieces = SortedPieces::read(&tiles, (&scratch, memory_bytes), observer, |id| {
         Ok(read::pieces(package, id, &classes)?)
     })?;
     let places = Places::new(manifest, Coordinates::Package).map_err(FeaturesError::from)?;
@@ -94,12 +89,13 @@ fn growth_of(
         }
     }
     let joined = lines(&of_finest);
-    let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
+    let distance_m = places.metric();
     let profiled: Vec<Profiled<'_>> =
         joined.iter().map(|line| Profiled::of(line, &distance_m)).collect();
     let measures = Measures::of(&profiled);
     let joins: usize = joined.iter().map(|line| line.joins.len()).sum();
-    let cuts = cut_ends(&of_finest, clip(manifest)).saturating_sub(2 * joins as u64);
+    let clip = manifest.clip.as_ref().map(|clip| manifest.frame.lattice_bounds(clip.nodes));
+    let cuts = cut_ends(&of_finest, clip).saturating_sub(2 * joins as u64);
     Ok(Some(WayGrowth {
         way_id,
         class,
@@ -130,12 +126,6 @@ fn cut_ends(pieces: &[Piece], clip: Option<LatticeBounds>) -> u64 {
             + u64::from(is_cut(piece.vertices.last(), last))
     };
     pieces.iter().map(ends).sum()
-}
-
-/// The bounds that were asked for, on the lattice: roads of the finest level end there.
-fn clip(manifest: &Manifest) -> Option<LatticeBounds> {
-    let [min, max] = manifest.clip.as_ref()?.nodes.map(|node| manifest.frame.lattice_of_node(node));
-    Some(LatticeBounds { min, max })
 }
 
 #[cfg(test)]

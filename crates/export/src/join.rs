@@ -8,11 +8,8 @@ use crate::piece::{Piece, Vertex};
 /// they differ in their last bits. With coordinates below 2^24 m that is far less than this.
 const SAME_HEIGHT_M: f64 = 1e-6;
 
-/// A line without gaps: which pieces follow each other.
-type Chain = Vec<usize>;
-
 /// A line without gaps.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) struct Line {
     pub(crate) vertices: Vec<Vertex>,
     /// Where pieces were joined: numbers of vertices, ascending.
@@ -25,7 +22,7 @@ pub(crate) fn lines(pieces: &[Piece]) -> Vec<Line> {
 }
 
 /// The line of pieces that follow each other. The vertex where two meet is there once.
-fn line(pieces: &[Piece], chain: &Chain) -> Line {
+fn line(pieces: &[Piece], chain: &[usize]) -> Line {
     let mut line = Line { vertices: Vec::new(), joins: Vec::new() };
     for &index in chain {
         let vertices = &pieces[index].vertices;
@@ -49,48 +46,71 @@ fn line(pieces: &[Piece], chain: &Chain) -> Line {
 ///
 /// A piece that ends at a place goes on with one that begins there, of another tile if there is one, else the first in the
 /// package's order. More than one can only begin there where the way meets itself exactly on a border.
-fn chains(pieces: &[Piece]) -> Vec<Chain> {
+fn chains(pieces: &[Piece]) -> Vec<Vec<usize>> {
     let mut starts: BTreeMap<[u64; 2], Vec<usize>> = BTreeMap::new();
     for (index, piece) in pieces.iter().enumerate() {
         if let (true, Some(first)) = (piece.goes_on[0], piece.vertices.first()) {
             starts.entry(first.at.map(f64::to_bits)).or_default().push(index);
         }
     }
-    let mut next: Vec<Option<usize>> = vec![None; pieces.len()];
-    let mut follows = vec![false; pieces.len()];
+    let mut following = Following::among(pieces.len());
     for (index, piece) in pieces.iter().enumerate() {
         let (true, Some(last)) = (piece.goes_on[1], piece.vertices.last()) else { continue };
         let Some(candidates) = starts.get(&last.at.map(f64::to_bits)) else { continue };
         let fits = |&&other: &&usize| {
             let first = pieces[other].vertices.first();
             let is_level = first.is_some_and(|first| (first.z_m - last.z_m).abs() <= SAME_HEIGHT_M);
-            other != index && !follows[other] && is_level
+            other != index && !following.has_before[other] && is_level
         };
         let is_elsewhere = |&&other: &&usize| pieces[other].key.tile != piece.key.tile;
         let of_another_tile = candidates.iter().filter(fits).find(is_elsewhere);
-        next[index] = of_another_tile.or_else(|| candidates.iter().find(fits)).copied();
-        if let Some(other) = next[index] {
-            follows[other] = true;
+        if let Some(&other) = of_another_tile.or_else(|| candidates.iter().find(fits)) {
+            following.join(index, other);
         }
     }
-    let mut chains = Vec::new();
-    let mut is_taken = vec![false; pieces.len()];
-    // Lines with a beginning first; what is left are rings, which begin with their first piece.
-    let beginnings = (0..pieces.len()).filter(|&index| !follows[index]);
-    for beginning in beginnings.chain(0..pieces.len()) {
-        let mut chain = Chain::new();
-        let mut at = Some(beginning);
-        while let Some(index) = at.filter(|&index| !is_taken[index]) {
-            is_taken[index] = true;
-            chain.push(index);
-            at = next[index];
-        }
-        if !chain.is_empty() {
-            chains.push(chain);
-        }
-    }
+    let mut chains = following.chains(0..pieces.len());
     chains.sort_unstable();
     chains
+}
+
+/// Which of some numbers are followed by which.
+pub(crate) struct Following {
+    pub(crate) next: Vec<Option<usize>>,
+    pub(crate) has_before: Vec<bool>,
+}
+
+impl Following {
+    /// Numbers below `count`, none of which is followed yet.
+    pub(crate) fn among(count: usize) -> Self {
+        Self { next: vec![None; count], has_before: vec![false; count] }
+    }
+
+    /// Lets one be followed by another, which follows none yet.
+    pub(crate) fn join(&mut self, one: usize, other: usize) {
+        self.next[one] = Some(other);
+        self.has_before[other] = true;
+    }
+
+    /// The numbers in chains, as they follow each other: those with a beginning first; what is left are rings, which begin with the first of `numbers`.
+    pub(crate) fn chains(self, numbers: impl Iterator<Item = usize> + Clone) -> Vec<Vec<usize>> {
+        let Self { next, has_before } = self;
+        let mut is_taken = vec![false; next.len()];
+        let mut chains = Vec::new();
+        let beginnings = numbers.clone().filter(|&number| !has_before[number]);
+        for beginning in beginnings.chain(numbers) {
+            let mut chain = Vec::new();
+            let mut at = Some(beginning);
+            while let Some(number) = at.filter(|&number| !is_taken[number]) {
+                is_taken[number] = true;
+                chain.push(number);
+                at = next[number];
+            }
+            if !chain.is_empty() {
+                chains.push(chain);
+            }
+        }
+        chains
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 use corniche_drape::OwnedBorders;
 use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TileId, Work};
 use corniche_tileset::{FilePackage, Sections};
-use corniche_tin::{Placement, Surface};
 use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use crate::{
@@ -79,8 +78,7 @@ fn lay_on(
     }
     let Some(payload) = package.payload(id, Sections::TERRAIN)? else { return Ok(()) };
     let Some(terrain) = &payload.terrain else { return Ok(()) };
-    let quantum_m = manifest.vertical.quantum_m;
-    let surface = Surface::new(&terrain.tin, Placement::of_tile(&manifest.frame, id, quantum_m));
+    let surface = read::surface_of(manifest, id, terrain);
     for (line, path) in paths.iter().enumerate() {
         let Some(path) = path else { continue };
         let starts = starts_of(path);

@@ -42,7 +42,6 @@ mod dem_ground;
 mod edges;
 mod error;
 mod feature;
-mod feature_request;
 mod features;
 mod gdal_writing;
 mod geotiff;
@@ -59,6 +58,7 @@ mod mesh;
 mod piece;
 mod places;
 mod plan_piece;
+mod plane;
 mod profile;
 mod quantized_mesh;
 mod read;
@@ -66,7 +66,6 @@ mod relief_map;
 mod road_query;
 mod roads;
 mod route;
-mod scratch;
 mod sorted_pieces;
 mod span_facts;
 mod surfaces;
@@ -84,18 +83,18 @@ pub use error::{
     RouteError, SelectionError, SurfaceError, TileError, Tiles3dError,
 };
 pub use feature::{HeightKind, HeightSource, road_fields};
-pub use feature_request::{Coordinates, FeatureRequest, RoadFeatures};
-pub use features::check_lines_request;
+pub use features::{FeatureRequest, RoadFeatures, check_lines_request};
 pub use geotiff::{
     GeoTiffRequest, GeoTiffSummary, PictureFacts, PlaceOfPicture, export_geotiff, export_picture,
 };
 pub use growth::{WayGrowth, growth_by_way};
 pub use heights::{Elevation, with_vertical_crs};
 pub use lines::{LinesSummary, export_lines};
+pub use measures::ProfileGrades;
 pub use mesh::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, UpAxis, export_mesh};
+pub use places::Coordinates;
 pub use profile::{
-    Course, CourseLeg, Profile, ProfileGrades, ProfileLeg, ProfilePart, ProfilePoint, profile,
-    profile_of_course,
+    Course, CourseLeg, Profile, ProfileLeg, ProfilePart, ProfilePoint, profile, profile_of_course,
 };
 pub use quantized_mesh::{
     Availability, PlannedLevel, QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest,

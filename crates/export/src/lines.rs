@@ -9,12 +9,12 @@ use corniche_work::Observer;
 
 use crate::{
     cut::cut_line_at_bounds,
-    error::{FeaturesError, SelectionError, TileError},
-    feature_request::FeatureRequest,
-    features::{About, FeatureSource, Features, write_features},
+    error::{FeaturesError, SelectionError},
+    features::{About, FeatureRequest, FeatureSource, Features, write_features},
     piece::Vertex,
     plan_piece::{PlanPiece, class_of, lines_of},
-    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value},
+    read,
+    vector::{Field, FieldKind, Record, Shape, ShapeKind, Value, fields, fields_of, real},
     whole_lines::whole_lines,
 };
 
@@ -33,70 +33,52 @@ pub struct LinesSummary {
     pub length_m: f64,
 }
 
-const WAY_ID: Field =
-    Field::new("way_id", FieldKind::Integer64, "", "id of the way in OpenStreetMap");
-
-/// The fields of a layer that say its class.
-fn class_fields(layer: ClassedLayer) -> &'static [Field] {
-    match layer {
-        ClassedLayer::Boundaries => BOUNDARY_FIELDS,
-    }
+/// A way on its way into a file.
+struct LineFeature<'a> {
+    way_id: i64,
+    class: LineClass,
+    /// The names of what ways bound.
+    names: Option<&'a LineNames>,
+    length_m: f64,
+    parts: usize,
+    points: u64,
 }
 
-/// What these fields say of a class.
-fn class_values(layer: ClassedLayer, class: LineClass) -> Vec<Value> {
-    let name = Value::Text(class.name().to_owned());
-    match layer {
-        ClassedLayer::Boundaries => {
-            let class = BoundaryClass::from_number(class.number());
-            let level = class.and_then(BoundaryClass::admin_level);
-            vec![name, level.map_or(Value::Null, |level| Value::Integer(level.into()))]
-        }
-    }
+/// A field of lines with what is in it.
+type LineField = (Field, fn(&LineFeature<'_>) -> Value);
+
+fields! { WAY_FIELDS, line: &LineFeature<'_>:
+    "way_id", Integer64, "", "id of the way in OpenStreetMap", line.way_id;
 }
 
-const BOUNDARY_FIELDS: &[Field] = &[
-    Field::new(
-        "class",
-        FieldKind::Text,
-        "",
-        "the most important of what it bounds: `admin-2` to `admin-8` or `protected`",
-    ),
-    Field::new(
-        "admin_level",
-        FieldKind::Integer,
-        "",
-        "OSM's `admin_level` of that; null for protected areas",
-    ),
-];
+fields! { BOUNDARY_FIELDS, line: &LineFeature<'_>:
+    "class", Text, "", "the most important of what it bounds: `admin-2` to `admin-8` or `protected`", line.class.name();
+    "admin_level", Integer, "", "OSM's `admin_level` of that; null for protected areas",
+        BoundaryClass::from_number(line.class.number()).and_then(BoundaryClass::admin_level).map(i64::from);
+}
 
-const NAMES: Field = Field::new(
-    "names",
-    FieldKind::Text,
-    "",
-    "names of all that it bounds, by class, as JSON: `{\"admin-2\":[\"A\",\"B\"],\"protected\":[\"C\"]}`; null without",
-);
+fields! { NAME_FIELDS, line: &LineFeature<'_>:
+    "names", Text, "", "names of all that it bounds, by class, as JSON: `{\"admin-2\":[\"A\",\"B\"],\"protected\":[\"C\"]}`; null without",
+        names(line).as_deref();
+}
 
-/// What this field says of a way.
-fn names_value(names: &LineNames, way_id: i64) -> Value {
-    let Some(by_class) = names.get(&way_id) else { return Value::Null };
-    let by_class: serde_json::Map<String, serde_json::Value> = by_class
+fields! { MEASURES, line: &LineFeature<'_>:
+    "length_m", Real, "m", "true length in plan, on the ellipsoid of WGS84, of what the package has of it",
+        real(line.length_m);
+    "parts", Integer, "", "lines without a gap between them", line.parts as i64;
+    "points", Integer64, "", "points of these lines", line.points as i64;
+}
+
+/// The names of what a way bounds, by class, as JSON.
+fn names(line: &LineFeature<'_>) -> Option<String> {
+    let by_class: serde_json::Map<String, serde_json::Value> = line
+        .names?
+        .get(&line.way_id)?
         .iter()
         .map(|(class, names)| (class.name().to_owned(), names.iter().cloned().collect()))
         .collect();
-    Value::Text(serde_json::Value::from(by_class).to_string())
+    Some(serde_json::Value::from(by_class).to_string())
 }
-
-const MEASURES: &[Field] = &[
-    Field::new(
-        "length_m",
-        FieldKind::Real,
-        "m",
-        "true length in plan, on the ellipsoid of WGS84, of what the package has of it",
-    ),
-    Field::new("parts", FieldKind::Integer, "", "lines without a gap between them"),
-    Field::new("points", FieldKind::Integer64, "", "points of these lines"),
-];
 
 /// Writes a layer of lines of a package to a new file at `path`: a feature for each way, joined again over borders of tiles, each segment once.
 /// Beside the file, in the same folder, are unnamed files for sorting. After an error the file at `path` is of no use. With `names` each way has
@@ -112,10 +94,7 @@ pub fn export_lines(
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<LinesSummary, FeaturesError> {
-    if package.manifest().lines(layer).is_none() {
-        let package = package.path().to_path_buf();
-        return Err(SelectionError::NoLayer { package, layer: layer.name() }.into());
-    }
+    SelectionError::check_layer(package, layer.name(), package.manifest().lines(layer))?;
     let source = FeatureSource::new(package, request)?;
     let level = source.level;
     let summary = LinesSummary { level, ways: 0, lines: 0, points: 0, length_m: 0.0 };
@@ -131,6 +110,16 @@ struct Lines<'a> {
     summary: LinesSummary,
 }
 
+impl Lines<'_> {
+    fn fields(&self) -> Vec<LineField> {
+        let of_class = match self.layer {
+            ClassedLayer::Boundaries => BOUNDARY_FIELDS,
+        };
+        let names = if self.names.is_some() { NAME_FIELDS } else { &[] };
+        [WAY_FIELDS, of_class, names, MEASURES].concat()
+    }
+}
+
 impl Features for Lines<'_> {
     type Class = LineClass;
     type Piece = PlanPiece;
@@ -141,9 +130,8 @@ impl Features for Lines<'_> {
     }
 
     fn about(&self, source: &FeatureSource<'_, LineClass>) -> About {
-        let names: &[Field] = if self.names.is_some() { &[NAMES] } else { &[] };
         About {
-            fields: [&[WAY_ID], class_fields(self.layer), names, MEASURES].concat(),
+            fields: fields_of(&self.fields()),
             description: format!(
                 "{}, as they are stored for {}.",
                 self.layer.table().title,
@@ -158,10 +146,8 @@ impl Features for Lines<'_> {
         FeatureSource { package, request, .. }: &FeatureSource<'_, LineClass>,
         tile: TileId,
     ) -> Result<Vec<PlanPiece>, FeaturesError> {
-        let Some(bytes) = package.tile(tile)? else { return Ok(Vec::new()) };
-        let lines = decode_lines(&bytes, tile, self.layer).map_err(|source| {
-            TileError::Damaged { layer: self.name(), source: Box::new(source) }
-        })?;
+        let lines =
+            read::layer(package, tile, self.name(), |bytes| decode_lines(bytes, tile, self.layer))?;
         let wanted = lines.into_iter().filter(|one| request.classes.contains(&one.class));
         Ok(wanted
             .map(|line| PlanPiece {
@@ -185,11 +171,8 @@ impl Features for Lines<'_> {
     ) -> Result<Vec<Record>, FeaturesError> {
         let class = class_of(pieces, |number| self.layer.class(number))?;
         let object = pieces[0].object;
-        let vertex = |point: &LatticePoint| Vertex {
-            at: [point.u as f64, point.v as f64],
-            z_m: 0.0,
-            is_source: true,
-        };
+        let vertex =
+            |point: &LatticePoint| Vertex { at: point.in_steps(), z_m: 0.0, is_source: true };
         let whole = whole_lines(&lines_of(pieces)).into_iter();
         let whole = whole.map(|line| line.iter().map(vertex).collect::<Vec<Vertex>>());
         let lines: Vec<Vec<Vertex>> = match &request.bounds {
@@ -213,14 +196,15 @@ impl Features for Lines<'_> {
         for line in &lines {
             carried.extend(places.carry(object, line)?);
         }
-        let mut values = vec![Value::Integer(object.parts().1)];
-        values.extend(class_values(self.layer, class));
-        values.extend(self.names.map(|names| names_value(names, object.parts().1)));
-        values.extend([
-            Value::Real((length_m * 1e6).round() / 1e6),
-            Value::Integer(lines.len() as i64),
-            Value::Integer(points as i64),
-        ]);
+        let line = LineFeature {
+            way_id: object.parts().1,
+            class,
+            names: self.names,
+            length_m,
+            parts: lines.len(),
+            points,
+        };
+        let values = self.fields().into_iter().map(|(_, value)| value(&line)).collect();
         Ok(vec![Record { values, shape: Shape::Lines(carried) }])
     }
 }

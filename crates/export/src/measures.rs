@@ -1,29 +1,38 @@
 //! How long, how steep and how detailed lines are.
 
-use crate::join::Line;
+use crate::{
+    join::Line,
+    piece::{Vertex, larger},
+};
 
 /// A grade is taken over at least this length: shorter ones tell of single triangles and of steps in the heights, not of the
 /// road.
 pub(crate) const LEAST_GRADE_LENGTH_M: f64 = 20.0;
 
 /// What is measured of a feature, over all its lines.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Measures {
     /// True length in plan, on the ellipsoid of WGS84.
     pub(crate) length_2d_m: f64,
     /// True length with heights.
     pub(crate) length_3d_m: f64,
-    /// Metres upwards in the direction of the way, all of them together.
-    pub(crate) ascent_m: f64,
-    /// The same downwards.
-    pub(crate) descent_m: f64,
-    /// Steepest grade over [`LEAST_GRADE_LENGTH_M`] or more of one line: rise over run, without sign; `None` where no line
-    /// is as long.
-    pub(crate) steepest: Option<f64>,
+    /// Over [`LEAST_GRADE_LENGTH_M`] or more of one line.
+    pub(crate) grades: ProfileGrades,
     /// Points of the level's lines, before they were laid on the ground.
     pub(crate) vertices_in: u64,
     /// Vertices of the lines on the ground.
     pub(crate) vertices_out: u64,
+}
+
+/// What is measured of profiles: lines of distances and heights.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ProfileGrades {
+    /// Metres upwards in the direction of the lines, all of them together.
+    pub ascent_m: f64,
+    /// The same downwards.
+    pub descent_m: f64,
+    /// The steepest grade over a least length of one line: rise over run, without sign; `None` where no line is as long.
+    pub steepest: Option<f64>,
 }
 
 /// A line with its profile: true distances in plan from its beginning, and heights, of all its vertices.
@@ -35,33 +44,68 @@ pub(crate) struct Profiled<'a> {
 impl<'a> Profiled<'a> {
     /// A line with its profile. `distance_m` gives the true distance in plan between two places on the lattice.
     pub(crate) fn of(line: &'a Line, distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64) -> Self {
-        let mut profile = Vec::with_capacity(line.vertices.len());
-        let mut along_m = 0.0;
-        profile.extend(line.vertices.first().map(|first| [0.0, first.z_m]));
-        for [from, to] in line.vertices.array_windows::<2>() {
-            along_m += distance_m(from.at, to.at);
-            profile.push([along_m, to.z_m]);
-        }
-        Self { line, profile }
+        Self { line, profile: profile_of(&line.vertices, distance_m) }
     }
+}
+
+/// The profile of a line: true distances in plan from its beginning, and heights.
+pub(crate) fn profile_of(
+    vertices: &[Vertex],
+    distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64,
+) -> Vec<[f64; 2]> {
+    let distances_m = distances_m(vertices.iter().map(|vertex| vertex.at), distance_m);
+    let places = distances_m.into_iter().zip(vertices);
+    places.map(|(along_m, vertex)| [along_m, vertex.z_m]).collect()
+}
+
+/// How far along a line each of its places is, from the first.
+pub(crate) fn distances_m(
+    places: impl Iterator<Item = [f64; 2]>,
+    distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64,
+) -> Vec<f64> {
+    let (mut before, mut along_m) = (None, 0.0);
+    let next = |at| {
+        if let Some(before) = before.replace(at) {
+            along_m += distance_m(before, at);
+        }
+        along_m
+    };
+    places.map(next).collect()
 }
 
 impl Measures {
     /// The measures of some lines.
     pub(crate) fn of(lines: &[Profiled<'_>]) -> Self {
-        let mut all = Self::default();
+        let profiles = lines.iter().map(|line| &line.profile);
+        let grades = ProfileGrades::of(profiles, LEAST_GRADE_LENGTH_M);
+        let mut all = Self { grades, ..Self::default() };
         for Profiled { line, profile } in lines {
             for [from, to] in profile.array_windows::<2>() {
-                let [run_m, rise_m] = [to[0] - from[0], to[1] - from[1]];
-                all.length_3d_m += run_m.hypot(rise_m);
+                all.length_3d_m += (to[0] - from[0]).hypot(to[1] - from[1]);
+            }
+            all.length_2d_m += profile.last().map_or(0.0, |last| last[0]);
+            all.vertices_in += source_points(line);
+            all.vertices_out += line.vertices.len() as u64;
+        }
+        all
+    }
+}
+
+impl ProfileGrades {
+    /// The grades of some lines, the steepest one over `least_m` or more.
+    pub(crate) fn of<P: AsRef<[[f64; 2]]>>(
+        profiles: impl IntoIterator<Item = P>,
+        least_m: f64,
+    ) -> Self {
+        let mut all = Self::default();
+        for profile in profiles {
+            let profile = profile.as_ref();
+            for [from, to] in profile.array_windows::<2>() {
+                let rise_m = to[1] - from[1];
                 all.ascent_m += rise_m.max(0.0);
                 all.descent_m += (-rise_m).max(0.0);
             }
-            all.length_2d_m += profile.last().map_or(0.0, |last| last[0]);
-            let grades = [all.steepest, steepest(profile, LEAST_GRADE_LENGTH_M)];
-            all.steepest = grades.into_iter().flatten().reduce(f64::max);
-            all.vertices_in += source_points(line);
-            all.vertices_out += line.vertices.len() as u64;
+            all.steepest = larger(all.steepest, steepest(profile, least_m));
         }
         all
     }
@@ -75,7 +119,7 @@ impl Measures {
 ///   a .-'''    b     is between two vertices, or over exactly the least length with a vertex at one end. Between vertices,
 ///                    twice the least length is enough: a longer stretch has a part, long enough, that is not less steep.
 /// ```
-pub(crate) fn steepest(profile: &[[f64; 2]], least_m: f64) -> Option<f64> {
+fn steepest(profile: &[[f64; 2]], least_m: f64) -> Option<f64> {
     let [begin_m, _] = *profile.first()?;
     let [last_m, _] = *profile.last()?;
     if last_m - begin_m < least_m {

@@ -3,7 +3,6 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::piece::Vertex;
 
 fn line(vertices: &[([f64; 2], f64, bool)], joins: &[usize]) -> Line {
     let vertices = vertices.iter().map(|&(at, z_m, is_source)| Vertex { at, z_m, is_source });
@@ -36,9 +35,9 @@ fn a_road_on_planes_is_measured_in_closed_form() {
     let found = measures(&[all]);
     near(found.length_2d_m, 400.0);
     near(found.length_3d_m, 300.0 * 1.01_f64.sqrt() + 100.0 * 1.0625_f64.sqrt());
-    near(found.ascent_m, 30.0);
-    near(found.descent_m, 25.0);
-    near(found.steepest.unwrap(), 0.25);
+    near(found.grades.ascent_m, 30.0);
+    near(found.grades.descent_m, 25.0);
+    near(found.grades.steepest.unwrap(), 0.25);
     assert_eq!((found.vertices_in, found.vertices_out), (3, 33));
 }
 
@@ -48,11 +47,11 @@ fn a_gap_has_no_grade() {
     let first = line(&[([0.0, 0.0], 0.0, true), ([19.0, 0.0], 10.0, true)], &[]);
     let second = line(&[([40.0, 0.0], 100.0, true), ([59.0, 0.0], 100.0, true)], &[]);
     let found = measures(&[first.clone(), second]);
-    assert_eq!(found.steepest, None, "no part is 20 m long");
+    assert_eq!(found.grades.steepest, None, "no part is 20 m long");
     near(found.length_2d_m, 38.0);
-    near(found.ascent_m, 10.0);
+    near(found.grades.ascent_m, 10.0);
     let third = line(&[([100.0, 0.0], 0.0, true), ([120.0, 0.0], 1.0, true)], &[]);
-    near(measures(&[first, third]).steepest.unwrap(), 0.05);
+    near(measures(&[first, third]).grades.steepest.unwrap(), 0.05);
 }
 
 /// A step of 5 m within 1 m counts over 20 m.
@@ -64,7 +63,7 @@ fn a_short_step_is_spread_over_the_least_length() {
         ([51.0, 0.0], 5.0, true),
         ([100.0, 0.0], 5.0, true),
     ];
-    near(measures(&[line(&steps, &[])]).steepest.unwrap(), 0.25);
+    near(measures(&[line(&steps, &[])]).grades.steepest.unwrap(), 0.25);
 }
 
 /// A straight line that a border cut has the points it had before; one that bends on the border has one more.

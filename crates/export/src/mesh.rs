@@ -7,7 +7,6 @@
 //! Memory holds one tile, and where tiles meet. Positions are those of the package: nothing is simplified or moved.
 
 mod glb;
-mod local;
 mod mesh_request;
 mod model;
 mod obj;

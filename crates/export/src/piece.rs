@@ -2,9 +2,15 @@
 
 use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
 use corniche_store::SortRecord;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    plane::{along, vector},
+    sorted_pieces::{put, take},
+};
 
 /// A vertex of a road on its tile's ground.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Vertex {
     /// Steps of the lattice east and north; whole for a source point.
     pub(crate) at: [f64; 2],
@@ -14,8 +20,26 @@ pub(crate) struct Vertex {
     pub(crate) is_source: bool,
 }
 
+impl Vertex {
+    /// The place on the way to another vertex.
+    pub(crate) fn towards(self, to: Self, share: f64) -> Self {
+        let [u, v, z_m] =
+            along([self.at[0], self.at[1], self.z_m], [to.at[0], to.at[1], to.z_m], share);
+        Self { at: [u, v], z_m, is_source: false }
+    }
+
+    /// The height at a place on the way to another vertex.
+    pub(crate) fn height_m_at(self, to: Self, at: [f64; 2]) -> f64 {
+        let run = vector(self.at, to.at);
+        let axis = usize::from(run[1].abs() > run[0].abs());
+        let share = (at[axis] - self.at[axis]) / run[axis];
+        let share = if share.is_finite() { share } else { 0.0 };
+        self.z_m + share * (to.z_m - self.z_m)
+    }
+}
+
 /// Where a piece comes from; pieces sort by it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct PieceKey {
     pub(crate) way_id: i64,
     /// The tile's place in the package.
@@ -41,7 +65,7 @@ pub(crate) struct Piece {
 }
 
 /// How far heights of a piece are from those of the elevation files, at most, metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PieceHeights {
     /// The piece's own heights, over the whole line where it lies on the ground; `None` where nothing of it lies on the files' samples.
     pub(crate) tolerance_m: Option<f64>,
@@ -56,16 +80,18 @@ pub(crate) struct PieceHeights {
 impl PieceHeights {
     /// What holds for two pieces together.
     pub(crate) fn with(self, other: Self) -> Self {
-        let most = |one: Option<f64>, other: Option<f64>| {
-            [one, other].into_iter().flatten().reduce(f64::max)
-        };
         Self {
-            tolerance_m: most(self.tolerance_m, other.tolerance_m),
-            ground_m: most(self.ground_m, other.ground_m),
+            tolerance_m: larger(self.tolerance_m, other.tolerance_m),
+            ground_m: larger(self.ground_m, other.ground_m),
             on_deck: self.on_deck && other.on_deck,
             has_deck: self.has_deck || other.has_deck,
         }
     }
+}
+
+/// The larger of two numbers; one alone is the larger.
+pub(crate) fn larger(one: Option<f64>, other: Option<f64>) -> Option<f64> {
+    [one, other].into_iter().flatten().reduce(f64::max)
 }
 
 /// No two pieces have the same key.
@@ -83,60 +109,17 @@ impl Ord for Piece {
     }
 }
 
-const VERTEX_BYTES: usize = 25;
-
 impl SortRecord for Piece {
-    /// Numbers in little-endian order; a text has its length before it; vertices come last.
     fn encode(&self, bytes: &mut Vec<u8>) {
         let Piece { key, class, attributes, vertices, goes_on, heights } = self;
         let AttributeParts { codes, width_mm, texts } = attributes.parts();
-        bytes.extend(key.way_id.to_le_bytes());
-        bytes.extend(key.tile.to_le_bytes());
-        bytes.extend(key.part.to_le_bytes());
-        bytes.extend(key.cut.to_le_bytes());
-        let [first, last] = *goes_on;
-        bytes.push(class.number());
-        bytes.extend([first, last, heights.on_deck, heights.has_deck].map(u8::from));
-        for number in [heights.tolerance_m, heights.ground_m] {
-            bytes.extend(number.unwrap_or(f64::NAN).to_le_bytes());
-        }
-        bytes.extend(codes);
-        bytes.extend(width_mm.to_le_bytes());
-        for text in texts {
-            bytes.extend((text.len() as u64).to_le_bytes());
-            bytes.extend(text.as_bytes());
-        }
-        bytes.reserve(vertices.len() * VERTEX_BYTES);
-        for vertex in vertices {
-            for number in [vertex.at[0], vertex.at[1], vertex.z_m] {
-                bytes.extend(number.to_le_bytes());
-            }
-            bytes.push(u8::from(vertex.is_source));
-        }
+        put(&(key, class, codes, width_mm, texts, vertices, goes_on, heights), bytes);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let key = PieceKey {
-            way_id: i64::from_le_bytes(array(bytes)?),
-            tile: u64::from_le_bytes(array(bytes)?),
-            part: u32::from_le_bytes(array(bytes)?),
-            cut: u32::from_le_bytes(array(bytes)?),
-        };
-        let [class, first, last, on_deck, has_deck] = array(bytes)?;
-        let known = |number: f64| Some(number).filter(|number| !number.is_nan());
-        let [tolerance_m, ground_m] = [number(bytes)?, number(bytes)?].map(known);
-        let (on_deck, has_deck) = (on_deck == 1, has_deck == 1);
-        let heights = PieceHeights { tolerance_m, ground_m, on_deck, has_deck };
-        let (codes, width_mm) = (array(bytes)?, u32::from_le_bytes(array(bytes)?));
-        let attributes = RoadAttributes::from_parts(codes, width_mm, || text(bytes))?;
-        let mut vertices = Vec::with_capacity(bytes.len() / VERTEX_BYTES);
-        while !bytes.is_empty() {
-            let [u, v, z_m] = [number(bytes)?, number(bytes)?, number(bytes)?];
-            let [is_source] = array(bytes)?;
-            vertices.push(Vertex { at: [u, v], z_m, is_source: is_source == 1 });
-        }
-        let class = FunctionalRoadClass::new(class)?;
-        let goes_on = [first == 1, last == 1];
+        let (key, class, codes, width_mm, texts, vertices, goes_on, heights) = take(bytes)?;
+        let mut texts = <[String; 7]>::into_iter(texts);
+        let attributes = RoadAttributes::from_parts(codes, width_mm, || texts.next())?;
         Some(Self { key, class, attributes, vertices, goes_on, heights })
     }
 
@@ -144,23 +127,6 @@ impl SortRecord for Piece {
         let Piece { attributes, vertices, .. } = self;
         vertices.capacity() * size_of::<Vertex>() + attributes.text_bytes()
     }
-}
-
-pub(crate) fn array<const N: usize>(bytes: &mut &[u8]) -> Option<[u8; N]> {
-    let (head, rest) = bytes.split_first_chunk()?;
-    *bytes = rest;
-    Some(*head)
-}
-
-fn number(bytes: &mut &[u8]) -> Option<f64> {
-    array(bytes).map(f64::from_le_bytes)
-}
-
-pub(crate) fn text(bytes: &mut &[u8]) -> Option<String> {
-    let length = usize::try_from(u64::from_le_bytes(array(bytes)?)).ok()?;
-    let (text, rest) = bytes.split_at_checked(length)?;
-    *bytes = rest;
-    String::from_utf8(text.to_vec()).ok()
 }
 
 #[cfg(test)]

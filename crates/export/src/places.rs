@@ -8,20 +8,33 @@ use corniche_tileset::Manifest;
 use crate::{
     cut::{cut_at_antimeridian, cut_polygon_at_antimeridian},
     error::CoordinatesError,
-    feature_request::Coordinates,
+    measures::distances_m,
     piece::Vertex,
 };
 
+/// What coordinates the features get.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coordinates {
+    /// Coordinates of the package's CRS, with the package's heights: exactly what the tiles hold.
+    Package,
+    /// Longitude, latitude and height above the ellipsoid of WGS84 (EPSG:4979).
+    Wgs84,
+    /// Longitude and latitude of WGS84, with the package's heights as they are.
+    Wgs84WithPackageHeights,
+    /// Coordinates of a projected CRS of the EPSG registry, by its code, with the package's heights as they are.
+    Epsg(u32),
+}
+
 /// Carries places on the lattice to the coordinates of features.
 pub(crate) struct Places<'a> {
-    manifest: &'a Manifest,
+    pub(crate) manifest: &'a Manifest,
     target: Target,
     /// Where the package's table of longitudes and latitudes ends: there is a network beyond it, if the package was cut.
     beyond: Option<Box<DemProjection>>,
-    /// WKT2 of the features' CRS.
-    wkt: String,
+    /// The CRS of features, as WKT2 or as a code.
+    pub(crate) wkt: String,
     /// What their heights are, in words.
-    heights: String,
+    pub(crate) heights: String,
 }
 
 enum Target {
@@ -33,10 +46,6 @@ enum Target {
     Projected(Box<ProjectedCrs>),
 }
 
-fn crs_failed(source: CrsError) -> CoordinatesError {
-    CoordinatesError::Crs(Box::new(source))
-}
-
 impl<'a> Places<'a> {
     pub(crate) fn new(
         manifest: &'a Manifest,
@@ -44,18 +53,18 @@ impl<'a> Places<'a> {
     ) -> Result<Self, CoordinatesError> {
         let Manifest { crs_wkt, metres_per_unit, data_bounds, vertical, settings, .. } = manifest;
         let whole = manifest.whole_data_bounds();
-        let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole).map_err(crs_failed)?;
+        let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole)?;
         let area = manifest.wgs84_bounds;
         let datum = &vertical.datum;
         let given = [&settings.vertical_crs, &settings.dem_vertical_crs];
         let given: Vec<&str> = given.into_iter().flatten().map(String::as_str).collect();
-        let known = RecordedHeights::find(&crs, datum, &given, area).map_err(crs_failed)?;
+        let known = RecordedHeights::find(&crs, datum, &given, area)?;
         let of_package = if known.is_some() {
             format!("{datum}, metres")
         } else {
             format!("metres, datum of the package: {datum}")
         };
-        let projection = || crs.projection(area).map(Box::new).map_err(crs_failed);
+        let projection = || Ok::<_, CrsError>(Box::new(crs.projection(area)?));
         let (target, wkt, heights) = match coordinates {
             Coordinates::Package => {
                 let both = known.as_ref().and_then(RecordedHeights::wkt);
@@ -87,20 +96,10 @@ impl<'a> Places<'a> {
             }
         };
         let beyond = match manifest.clip {
-            Some(_) => Some(Box::new(crs.projection(manifest.area_deg()).map_err(crs_failed)?)),
+            Some(_) => Some(Box::new(crs.projection(manifest.area_deg())?)),
             None => None,
         };
         Ok(Self { manifest, target, beyond, wkt, heights })
-    }
-
-    /// The CRS of features, as WKT2 or as a code.
-    pub(crate) fn crs(&self) -> &str {
-        &self.wkt
-    }
-
-    /// What heights of features are, in words.
-    pub(crate) fn heights(&self) -> &str {
-        &self.heights
     }
 
     /// Longitude and latitude of a place on the lattice, without PROJ: to the centimetre, and smooth.
@@ -117,17 +116,19 @@ impl<'a> Places<'a> {
         known_line_length_m(ends_m, ends_m.map(degrees), &degrees)
     }
 
+    /// The true distance in plan between two places on the lattice, as a function.
+    pub(crate) fn metric(&self) -> impl Fn([f64; 2], [f64; 2]) -> f64 + '_ {
+        |from, to| self.distance_m(from, to)
+    }
+
+    /// How far along a line on the lattice each of its points is.
+    pub(crate) fn distances_m(&self, points: impl Iterator<Item = LatticePoint>) -> Vec<f64> {
+        distances_m(points.map(LatticePoint::in_steps), &self.metric())
+    }
+
     /// The true length in plan of a line on the lattice.
-    pub(crate) fn length_m(&self, mut points: impl Iterator<Item = LatticePoint>) -> f64 {
-        let Some(first) = points.next() else { return 0.0 };
-        let mut before = first.in_steps();
-        let mut length_m = 0.0;
-        for point in points {
-            let at = point.in_steps();
-            length_m += self.distance_m(before, at);
-            before = at;
-        }
-        length_m
+    pub(crate) fn length_m(&self, points: impl Iterator<Item = LatticePoint>) -> f64 {
+        self.distances_m(points).last().copied().unwrap_or_default()
     }
 
     /// Longitude and latitude of a place in working metres, also beyond the package's table.
@@ -291,10 +292,5 @@ impl<'a> Places<'a> {
     /// Whether straight lines of the features' coordinates are straight in degrees.
     pub(crate) fn are_degrees(&self) -> bool {
         matches!(self.target, Target::Wgs84 { .. })
-    }
-
-    /// The package of the places.
-    pub(crate) fn manifest(&self) -> &'a Manifest {
-        self.manifest
     }
 }

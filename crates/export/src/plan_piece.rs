@@ -6,7 +6,7 @@ use corniche_store::SortRecord;
 
 use crate::{
     error::FeaturesError,
-    piece::{array, text},
+    sorted_pieces::{put, take},
 };
 
 /// What one tile holds of an object: rings of an area in any order, or a part of a line.
@@ -39,49 +39,15 @@ pub(crate) fn class_of<C>(
 }
 
 impl SortRecord for PlanPiece {
-    /// Numbers in little-endian order; the name has its length before it, and so has each line.
     fn encode(&self, bytes: &mut Vec<u8>) {
-        let (kind, id) = match self.object {
-            AreaObject::Way(id) => (0_u8, id),
-            AreaObject::Relation(id) => (1, id),
-        };
-        bytes.extend([kind, self.class]);
-        bytes.extend(id.to_le_bytes());
-        bytes.extend(self.tile.to_le_bytes());
-        bytes.extend((self.name.len() as u64).to_le_bytes());
-        bytes.extend(self.name.as_bytes());
-        for line in &self.lines {
-            bytes.extend((line.len() as u64).to_le_bytes());
-            for point in line {
-                bytes.extend(point.u.to_le_bytes());
-                bytes.extend(point.v.to_le_bytes());
-            }
-        }
+        let Self { object, tile, class, name, lines } = self;
+        let (_, id) = object.parts();
+        put(&(matches!(object, AreaObject::Way(_)), id, tile, class, name, lines), bytes);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let [kind, class] = array(bytes)?;
-        let id = i64::from_le_bytes(array(bytes)?);
-        let object = match kind {
-            0 => AreaObject::Way(id),
-            1 => AreaObject::Relation(id),
-            _ => return None,
-        };
-        let tile = u64::from_le_bytes(array(bytes)?);
-        let name = text(bytes)?;
-        let mut lines = Vec::new();
-        while !bytes.is_empty() {
-            let count = usize::try_from(u64::from_le_bytes(array(bytes)?)).ok()?;
-            if count > bytes.len() {
-                return None;
-            }
-            let mut line = Vec::with_capacity(count);
-            for _ in 0..count {
-                let u = i64::from_le_bytes(array(bytes)?);
-                line.push(LatticePoint { u, v: i64::from_le_bytes(array(bytes)?) });
-            }
-            lines.push(line);
-        }
+        let (is_way, id, tile, class, name, lines) = take(bytes)?;
+        let object = if is_way { AreaObject::Way(id) } else { AreaObject::Relation(id) };
         Some(Self { object, tile, class, name, lines })
     }
 

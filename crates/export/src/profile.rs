@@ -13,24 +13,23 @@ use corniche_tileset::FilePackage;
 use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use crate::{
-    deck_lines::{RaisedLine, on_deck},
-    dem_ground::{DemLine, DemNodes, lay},
+    deck_lines::{Carrier, lay_on_deck},
+    dem_ground::{DemLine, DemNodes},
     error::{ElevationError, ProfileError, SelectionError},
     feature::{HeightKind, HeightSource},
-    feature_request::Coordinates,
-    grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, most_steps, stretch_of_way},
+    grades::{MeasuredChains, SmoothLine, Smoothing, grades_of, most_steps, stretch_of_way},
     heights::{Elevation, sample_bound_m},
     join::{Line, lines},
     laid_lines::laid_lines,
-    measures::{LEAST_GRADE_LENGTH_M, Measures, Profiled},
+    measures::{LEAST_GRADE_LENGTH_M, ProfileGrades, profile_of},
     piece::{Piece, Vertex},
-    places::Places,
+    places::{Coordinates, Places},
     read,
     roads::RoadHeights,
 };
 
+use self::legs::joined_runs;
 pub use self::legs::{Course, CourseLeg, ProfileLeg};
-use self::legs::{joined_runs, legs_of};
 
 /// A place at both ends of the map comes out at the same longitude and latitude to this, as tables of coordinates have them to a centimetre.
 const SAME_PLACE_M: f64 = 0.02;
@@ -60,17 +59,6 @@ pub struct Profile {
     pub grades: ProfileGrades,
     /// With heights of the elevation files: those of a smooth line, and the largest distance of it from the line, metres.
     pub smooth: Option<(ProfileGrades, f64)>,
-}
-
-/// The ups and downs along a line.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ProfileGrades {
-    /// Metres upwards, all of them together.
-    pub ascent_m: f64,
-    /// The same downwards.
-    pub descent_m: f64,
-    /// Steepest grade over at least 20 m, of a smooth line 50 m, rise over run without sign; `None` where no part is as long.
-    pub steepest: Option<f64>,
 }
 
 /// A part of a profile without gaps.
@@ -119,7 +107,6 @@ pub fn profile(
     let mut of_ways: Vec<Vec<Line>> = Vec::with_capacity(way_ids.len());
     let pieces = pieces(package, way_ids, level, observer)?;
     let mut ways = BTreeMap::new();
-    let tolerance_m = sample_bound_m(manifest, level);
     for &way_id in way_ids {
         let own: Vec<Piece> =
             pieces.iter().filter(|piece| piece.key.way_id == way_id).cloned().collect();
@@ -131,11 +118,9 @@ pub fn profile(
         of_ways.push(lines(&own));
     }
     let (legs, parts) = in_a_row(way_ids, of_ways);
-    let smooth_ways = smooth_ways(way_ids.iter().copied(), &places, heights, observer)?;
-    let on_deck = BTreeSet::new();
-    let mut telling = Telling { level, places, legs, ways, on_deck, smooth_ways, tolerance_m };
-    let parts = telling.on_ground(parts, heights.elevation)?;
-    Ok(telling.tell(&parts, heights.elevation.is_some()))
+    let mut telling = Telling::new((places, level), (legs, ways), heights, observer)?;
+    let parts = telling.on_ground(parts)?;
+    Ok(telling.tell(&parts))
 }
 
 /// Follows lines over the ground of a level, one after the other. With elevation files, heights are theirs.
@@ -161,14 +146,12 @@ pub fn profile_of_course(
         parts.into_iter().map(of_line)
     });
     let parts: Vec<ProfileLine> = numbered.collect();
-    let tolerance_m = sample_bound_m(manifest, level);
-    let way_ids = course.legs.iter().map(|leg| leg.way_id).filter(|_| course.is_of_ways);
-    let smooth_ways = smooth_ways(way_ids, &places, heights, observer)?;
-    let legs = course.legs.iter();
-    let legs = legs.map(|leg| Leg { way_id: leg.way_id, is_turned: leg.is_against }).collect();
-    let (ways, on_deck) = (course.ways.clone(), BTreeSet::new());
-    let mut telling = Telling { level, places, legs, ways, on_deck, smooth_ways, tolerance_m };
-    let parts = telling.on_ground(parts, heights.elevation)?;
+    let of_legs = course.legs.iter();
+    let legs = of_legs.map(|leg| Leg { way_id: leg.way_id, is_turned: leg.is_against }).collect();
+    let heights = RoadHeights { network: heights.network.filter(|_| course.is_of_ways), ..heights };
+    let about = (legs, course.ways.clone());
+    let mut telling = Telling::new((places, level), about, heights, observer)?;
+    let parts = telling.on_ground(parts)?;
     // Lines go on at the other end of the map only once they were laid: between its ends there is nothing.
     let parts = joined(parts.into_iter(), &telling.places);
     if parts.is_empty() {
@@ -179,26 +162,7 @@ pub fn profile_of_course(
         let covered = manifest.covered_text(course.begins_deg.unwrap_or([f64::NAN; 2]));
         return Err(ProfileError::NoLineOnGround { package, begins, covered });
     }
-    Ok(telling.tell(&parts, heights.elevation.is_some()))
-}
-
-/// The smooth lines of ways, as those of their chains are, if elevation files and roads are known.
-fn smooth_ways(
-    way_ids: impl Iterator<Item = i64>,
-    places: &Places<'_>,
-    heights: RoadHeights<'_>,
-    observer: &dyn Observer,
-) -> Result<BTreeMap<i64, Vec<SmoothLine>>, ElevationError> {
-    let way_ids: BTreeSet<i64> = way_ids.collect();
-    let (Some(elevation), Some(network), false) =
-        (heights.elevation, heights.network, way_ids.is_empty())
-    else {
-        return Ok(BTreeMap::new());
-    };
-    let frame = &places.manifest().frame;
-    let (mut nodes, smoothing) = (DemNodes::new(elevation, frame), Smoothing::of_frame(frame));
-    let chains = MeasuredChains::measure(network, places, &mut nodes, smoothing, observer)?;
-    Ok(way_ids.into_iter().map(|way_id| (way_id, chains.of_way(way_id))).collect())
+    Ok(telling.tell(&parts))
 }
 
 /// What a profile is told from.
@@ -208,6 +172,7 @@ struct Telling<'a> {
     legs: Vec<Leg>,
     /// What is known of each way.
     ways: BTreeMap<i64, RoadAttributes>,
+    elevation: Option<Elevation<'a>>,
     /// Legs over bridges and through tunnels whose decks are known.
     on_deck: BTreeSet<usize>,
     /// The smooth line of each way, where those of chains are known.
@@ -216,23 +181,31 @@ struct Telling<'a> {
     tolerance_m: f64,
 }
 
-impl Telling<'_> {
-    /// The parts as they are, or on the ground of the elevation files.
-    fn on_ground(
-        &mut self,
-        parts: Vec<ProfileLine>,
-        elevation: Option<Elevation<'_>>,
-    ) -> Result<Vec<ProfileLine>, ElevationError> {
-        let Some(elevation) = elevation else { return Ok(parts) };
-        let frame = &self.places.manifest().frame;
-        self.on_dem(&parts, &mut DemNodes::new(elevation, frame))
+impl<'a> Telling<'a> {
+    fn new(
+        (places, level): (Places<'a>, u8),
+        (legs, ways): (Vec<Leg>, BTreeMap<i64, RoadAttributes>),
+        RoadHeights { elevation, network }: RoadHeights<'a>,
+        observer: &dyn Observer,
+    ) -> Result<Self, ElevationError> {
+        let mut smooth_ways = BTreeMap::new();
+        if let (Some(elevation), Some(network), false) = (elevation, network, legs.is_empty()) {
+            let chains = MeasuredChains::measure(network, &places, elevation, observer)?;
+            let way_ids: BTreeSet<i64> = legs.iter().map(|leg| leg.way_id).collect();
+            let of_way = |way_id| (way_id, chains.of_way(way_id));
+            smooth_ways = way_ids.into_iter().map(of_way).collect();
+        }
+        let tolerance_m = sample_bound_m(places.manifest, level);
+        let on_deck = BTreeSet::new();
+        Ok(Self { level, places, legs, ways, elevation, on_deck, smooth_ways, tolerance_m })
     }
 
     /// Measures the parts; those of elevation files are smoothed.
-    fn tell(self, parts: &[ProfileLine], is_on_dem: bool) -> Profile {
-        let smoothing = is_on_dem.then(|| Smoothing::of_frame(&self.places.manifest().frame));
-        let distance_m = |from: [f64; 2], to: [f64; 2]| self.places.distance_m(from, to);
-        let mut whole = Measures::default();
+    fn tell(self, parts: &[ProfileLine]) -> Profile {
+        let frame = &self.places.manifest.frame;
+        let smoothing = self.elevation.map(|_| Smoothing::of_frame(frame));
+        let distance_m = self.places.metric();
+        let mut length_3d_m = 0.0;
         let mut on_ground = Vec::new();
         let mut smooth = Vec::new();
         let mut most_off_m = 0.0_f64;
@@ -241,15 +214,15 @@ impl Telling<'_> {
         let mut on_structures_m = 0.0;
         let mut begin_m = 0.0;
         for part in parts {
-            let line =
-                Line { vertices: part.iter().map(|(_, at)| *at).collect(), joins: Vec::new() };
-            let profile = Profiled::of(&line, &distance_m).profile;
-            let own = Measures::of(&[Profiled { line: &line, profile: profile.clone() }]);
-            whole.length_2d_m += own.length_2d_m;
-            whole.length_3d_m += own.length_3d_m;
+            let vertices: Vec<Vertex> = part.iter().map(|(_, vertex)| *vertex).collect();
+            let profile = profile_of(&vertices, &distance_m);
+            let own_m = profile.last().map_or(0.0, |last| last[0]);
+            let lengths_m =
+                profile.array_windows().map(|[from, to]| (to[0] - from[0]).hypot(to[1] - from[1]));
+            length_3d_m += lengths_m.sum::<f64>();
             let runs = self.runs_on_ground(part);
             let lengths_m = runs.iter().map(|run| profile[run.end - 1][0] - profile[run.start][0]);
-            on_structures_m += own.length_2d_m - lengths_m.sum::<f64>();
+            on_structures_m += own_m - lengths_m.sum::<f64>();
             let smooth_of_runs: Vec<SmoothLine> = match smoothing {
                 Some(smoothing) => {
                     let of = |run: &Range<usize>| {
@@ -267,43 +240,28 @@ impl Telling<'_> {
             };
             let (runs, smooth_of_runs) = joined_runs(runs, smooth_of_runs);
             let points = self.points(part, (&profile, begin_m), (&runs, &smooth_of_runs));
-            let numbers: Vec<usize> = part.iter().map(|(leg, _)| *leg).collect();
-            let distances_m: Vec<f64> = points.iter().map(|point| point.distance_m).collect();
-            for (number, range_m) in legs_of(&distances_m, &numbers) {
-                self.add_leg(&mut legs, self.legs[number], range_m);
+            for ([from, to], &(leg, _)) in points.array_windows().zip(part.iter().skip(1)) {
+                self.add_leg(&mut legs, self.legs[leg], [from.distance_m, to.distance_m]);
             }
             told.push(ProfilePart { points });
-            begin_m += own.length_2d_m;
+            begin_m += own_m;
             for (run, line) in runs.iter().zip(&smooth_of_runs) {
                 most_off_m = most_off_m.max(line.most_off_m(&profile[run.clone()]));
             }
             smooth.extend(smooth_of_runs);
-            for run in runs {
-                let vertices = line.vertices[run].to_vec();
-                on_ground.push(Line { vertices, joins: Vec::new() });
-            }
+            on_ground.extend(runs.into_iter().map(|run| profile_of(&vertices[run], &distance_m)));
         }
-        let on_ground: Vec<Profiled<'_>> =
-            on_ground.iter().map(|line| Profiled::of(line, &distance_m)).collect();
-        let own = Measures::of(&on_ground);
-        let smooth = smoothing.map(|_| {
-            let SmoothGrades { ascent_m, descent_m, steepest } = SmoothGrades::of(&smooth);
-            (ProfileGrades { ascent_m, descent_m, steepest }, most_off_m)
-        });
+        let smooth = smoothing.map(|_| (grades_of(&smooth), most_off_m));
         Profile {
             level: self.level,
-            heights: self.places.heights().to_owned(),
+            heights: self.places.heights.clone(),
             height_tolerance_m: self.tolerance_m,
             parts: told,
             legs: legs.into_iter().map(|(_, leg)| leg).collect(),
-            length_2d_m: whole.length_2d_m,
-            length_3d_m: whole.length_3d_m,
+            length_2d_m: begin_m,
+            length_3d_m,
             on_structures_m,
-            grades: ProfileGrades {
-                ascent_m: own.ascent_m,
-                descent_m: own.descent_m,
-                steepest: own.steepest,
-            },
+            grades: ProfileGrades::of(on_ground, LEAST_GRADE_LENGTH_M),
             smooth,
         }
     }
@@ -318,29 +276,30 @@ impl Telling<'_> {
         }
     }
 
-    /// The same parts on the ground of the elevation files.
-    fn on_dem(
-        &mut self,
-        parts: &[ProfileLine],
-        nodes: &mut DemNodes<'_>,
-    ) -> Result<Vec<ProfileLine>, ElevationError> {
+    /// The parts as they are, or on the ground of the elevation files and on decks.
+    fn on_ground(&mut self, parts: Vec<ProfileLine>) -> Result<Vec<ProfileLine>, ElevationError> {
+        let Some(elevation) = self.elevation else { return Ok(parts) };
+        let nodes = &mut DemNodes::new(elevation, &self.places.manifest.frame);
         self.tolerance_m = 0.0;
         let mut laid_parts: Vec<ProfileLine> = Vec::new();
         for part in parts {
-            // Leg by leg, so that each vertex knows its own.
             let mut first = 0;
             while first + 1 < part.len() {
                 let leg = part[first + 1].0;
                 let own = part[first + 1..].iter().take_while(|(of, _)| *of == leg).count();
                 let run: Vec<Vertex> =
                     part[first..=first + own].iter().map(|(_, vertex)| *vertex).collect();
-                for DemLine { mut vertices, tolerance_m, .. } in lay(nodes, &run)? {
-                    let raised = self.raised(leg, &vertices);
-                    if raised.as_ref().is_none_or(|line| line.is_on_ground) {
-                        self.tolerance_m = self.tolerance_m.max(tolerance_m.unwrap_or(0.0));
-                    }
-                    if let Some(RaisedLine { vertices: own, .. }) = raised {
-                        vertices = own;
+                let Leg { way_id, is_turned } = self.legs[leg];
+                let carrier = Carrier {
+                    structure: self.structure(leg),
+                    way: self.smooth_ways.get(&way_id).map_or(&[], Vec::as_slice),
+                    most_steps: most_steps(self.places.manifest, self.level),
+                    is_turned,
+                };
+                let laid = lay_on_deck(nodes, &run, &carrier, &self.places.metric())?;
+                for DemLine { vertices, tolerance_m, on_deck, .. } in laid {
+                    self.tolerance_m = self.tolerance_m.max(tolerance_m.unwrap_or(0.0));
+                    if on_deck {
                         self.on_deck.insert(leg);
                     }
                     let begin = vertices.first().map(|vertex| vertex.at);
@@ -359,18 +318,6 @@ impl Telling<'_> {
         Ok(laid_parts)
     }
 
-    /// A line of a bridge or a tunnel on its deck; `None` where it is none, or not known.
-    fn raised(&self, leg: usize, ground: &[Vertex]) -> Option<RaisedLine> {
-        let Leg { way_id, is_turned } = self.legs[leg];
-        let (structure, way) = (self.structure(leg), self.smooth_ways.get(&way_id)?);
-        let most_steps = most_steps(self.places.manifest(), self.level);
-        let distance_m = |from: [f64; 2], to: [f64; 2]| self.places.distance_m(from, to);
-        let ground = along_way(ground.iter().copied(), is_turned);
-        let raised = on_deck(structure, &ground, (way, most_steps), &distance_m)?;
-        let vertices = along_way(raised.vertices.into_iter(), is_turned);
-        Some(RaisedLine { vertices, ..raised })
-    }
-
     /// Whether heights along a leg are its own.
     fn is_measured(&self, leg: usize) -> bool {
         self.structure(leg) == Structure::Ground || self.on_deck.contains(&leg)
@@ -386,7 +333,7 @@ impl Telling<'_> {
         let Leg { way_id, is_turned } = self.legs[run.last()?.0];
         let way = self.smooth_ways.get(&way_id)?;
         let [begin_m, end_m] = [profile.first()?[0], profile.last()?[0]];
-        let most_steps = most_steps(self.places.manifest(), self.level);
+        let most_steps = most_steps(self.places.manifest, self.level);
         let vertices = along_way(run.iter().map(|(_, vertex)| *vertex), is_turned);
         let stretch = stretch_of_way(way, &vertices, end_m - begin_m, most_steps)?;
         let parts = way.iter().map(|line| line.part(stretch));
@@ -432,10 +379,9 @@ impl Telling<'_> {
             let line = smooth.get(run)?;
             Some([line.height_m(along_m), line.grade(along_m)])
         };
-        let point = |(index, ((leg, vertex), (at, grade)))| {
-            let (&leg, vertex): (&usize, &Vertex) = (leg, vertex);
-            let &[along_m, height_m]: &[f64; 2] = at;
-            ProfilePoint {
+        let measured = part.iter().zip(profile).zip(grades(profile)).enumerate();
+        measured
+            .map(|(index, ((&(leg, vertex), &[along_m, height_m]), grade))| ProfilePoint {
                 way_id: self.legs[leg].way_id,
                 distance_m: begin_m + along_m,
                 height_m,
@@ -443,14 +389,7 @@ impl Telling<'_> {
                 position_deg: self.places.wgs84(vertex.at),
                 height_source: from.kind(self.structure(leg), self.on_deck.contains(&leg)),
                 smooth: smooth_at(index, along_m),
-            }
-        };
-        let measured = profile.iter().zip(grades(profile));
-        part.iter()
-            .map(|(leg, vertex)| (leg, vertex))
-            .zip(measured)
-            .enumerate()
-            .map(point)
+            })
             .collect()
     }
 }
@@ -474,7 +413,7 @@ fn pieces(
 }
 
 /// A way as it is followed once, or a line of a file. A way may be followed again, also back at once.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 struct Leg {
     way_id: i64,
     /// Whether it is followed against its direction.
@@ -532,7 +471,7 @@ fn in_a_row(way_ids: &[i64], of_ways: Vec<Vec<Line>>) -> (Vec<Leg>, Vec<ProfileL
 /// Lines of which each begins where the one before ends are one part: also where a line ends at the end of the map and goes on at its other end.
 fn joined(lines: impl Iterator<Item = ProfileLine>, places: &Places<'_>) -> Vec<ProfileLine> {
     let mut parts: Vec<ProfileLine> = Vec::new();
-    let near_steps = NEAR_ON_MAP_M / places.manifest().frame.lattice_step_m();
+    let near_steps = NEAR_ON_MAP_M / places.manifest.frame.lattice_step_m();
     for line in lines {
         let goes_on = |before: &&mut ProfileLine| match (before.last(), line.first()) {
             (Some((_, end)), Some((_, begin))) => {

@@ -19,12 +19,9 @@ mod ground;
 mod horizon;
 mod layer;
 mod mesh;
-mod mesh_vertex;
-mod node_heights;
 mod plan;
 mod quantized_mesh_request;
 mod raster;
-mod surfaces;
 mod tiling;
 mod write_tiles;
 

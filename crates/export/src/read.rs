@@ -3,16 +3,17 @@
 use std::collections::HashMap;
 
 use corniche_drape::{DrapedLine, DrapedVertex};
-use corniche_geom::{Bounds, GridFrame, LatticePoint, TileId};
+use corniche_geom::{Bounds, GridFrame, LatticeBounds, LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{
-    FilePackage, GeoRoad, Manifest, Sections, SpanRun, TilePayload, decode_spans, pmtiles_order,
+    DecodeError, FilePackage, GeoRoad, Manifest, Sections, SpanRun, Terrain, TilePayload,
+    decode_spans, pmtiles_order,
 };
 use corniche_tin::{Placement, Surface};
 
 use crate::{
     between_samples::SampleCells,
-    bounds::DegreeBounds,
+    bounds::{DegreeBounds, intersection},
     error::{SelectionError, TileError},
     piece::{Piece, PieceHeights, PieceKey, Vertex},
 };
@@ -76,13 +77,7 @@ pub(crate) fn meets(manifest: &Manifest, id: TileId, bounds: &DegreeBounds) -> b
 /// The part of a tile on which data can lie. The table of coordinates reaches little beyond the data: of small ones a tile is many times as wide, and
 /// places far outside would come out anywhere.
 pub(crate) fn data_part(manifest: &Manifest, id: TileId) -> Bounds {
-    let (tile, data) = (manifest.frame.tile_bounds(id), manifest.data_bounds);
-    Bounds {
-        min_x: tile.min_x.max(data.min_x),
-        min_y: tile.min_y.max(data.min_y),
-        max_x: tile.max_x.min(data.max_x),
-        max_y: tile.max_y.min(data.max_y),
-    }
+    intersection(manifest.frame.tile_bounds(id), manifest.data_bounds)
 }
 
 /// Longitudes and latitudes over the part of a tile on which data can lie.
@@ -120,8 +115,7 @@ pub(crate) fn bounded_pieces(
     let (manifest, Some(terrain)) = (package.manifest(), &payload.terrain) else {
         return Ok(Vec::new());
     };
-    let quantum_m = manifest.vertical.quantum_m;
-    let surface = Surface::new(&terrain.tin, Placement::of_tile(&manifest.frame, id, quantum_m));
+    let surface = surface_of(manifest, id, terrain);
     let mut pieces = pieces_on(&surface, &payload, manifest, classes)?;
     let cells = SampleCells::of(manifest, id.z());
     let mut cells = cells.as_ref().map(|cells| cells.on_tile(&surface, terrain.geometric_error_m));
@@ -129,6 +123,23 @@ pub(crate) fn bounded_pieces(
         piece.heights.tolerance_m = cells.as_mut().map(|cells| cells.bound_m(&piece.vertices));
     }
     Ok(pieces)
+}
+
+/// The ground of a tile, on the lattice.
+pub(crate) fn surface_of(manifest: &Manifest, id: TileId, terrain: &Terrain) -> Surface {
+    let Manifest { frame, vertical, .. } = manifest;
+    Surface::new(&terrain.tin, Placement::of_tile(frame, id, vertical.quantum_m))
+}
+
+/// What one tile holds of a layer, which `decode` finds in its bytes.
+pub(crate) fn layer<T>(
+    package: &FilePackage,
+    id: TileId,
+    layer: &'static str,
+    decode: impl FnOnce(&[u8]) -> Result<Vec<T>, DecodeError>,
+) -> Result<Vec<T>, TileError> {
+    let Some(bytes) = package.tile(id)? else { return Ok(Vec::new()) };
+    decode(&bytes).map_err(|source| TileError::Damaged { layer, source: Box::new(source) })
 }
 
 /// The runs of bridges and tunnels of one tile by their ways; none in a package that was built without.
@@ -141,11 +152,9 @@ pub(crate) fn span_runs(
     if manifest.spans.is_none() {
         return Ok(runs);
     }
-    let Some(bytes) = package.tile(id)? else { return Ok(runs) };
-    let found = decode_spans(&bytes, id, &manifest.frame, manifest.vertical.quantum_m);
-    let damaged =
-        |source| TileError::Damaged { layer: "bridges and tunnels", source: Box::new(source) };
-    for run in found.map_err(damaged)? {
+    let runs_of =
+        |bytes: &[u8]| decode_spans(bytes, id, &manifest.frame, manifest.vertical.quantum_m);
+    for run in layer(package, id, "bridges and tunnels", runs_of)? {
         runs.entry(run.way_id).or_default().push(run);
     }
     Ok(runs)
@@ -158,9 +167,7 @@ pub(crate) fn pieces_of(
     classes: &[FunctionalRoadClass],
 ) -> Result<Vec<Piece>, TileError> {
     let Some(terrain) = &payload.terrain else { return Ok(Vec::new()) };
-    let Manifest { frame, vertical, .. } = manifest;
-    let placement = Placement::of_tile(frame, payload.id, vertical.quantum_m);
-    pieces_on(&Surface::new(&terrain.tin, placement), payload, manifest, classes)
+    pieces_on(&surface_of(manifest, payload.id, terrain), payload, manifest, classes)
 }
 
 fn pieces_on(
@@ -215,15 +222,14 @@ pub(crate) fn vertices(
 /// Whether the ends of a line are points on its tile's border. A line that ends where the ground ends has no such point.
 fn goes_on(road: &GeoRoad, frame: &GridFrame, id: TileId) -> [bool; 2] {
     let tile = frame.tile_lattice_bounds(id);
-    let is_on_border = |point: LatticePoint| {
-        point.u == tile.min.u
-            || point.u == tile.max.u
-            || point.v == tile.min.v
-            || point.v == tile.max.v
-    };
     let vertices = &road.line.vertices;
     [vertices.first(), vertices.last()].map(|vertex| match vertex {
-        Some(DrapedVertex::Source { point, .. }) => is_on_border(*point),
+        Some(DrapedVertex::Source { point, .. }) => is_on_border(*point, &tile),
         _ => false,
     })
+}
+
+/// Whether a point of a tile lies on its border.
+pub(crate) fn is_on_border(point: LatticePoint, tile: &LatticeBounds) -> bool {
+    [tile.min.u, tile.max.u].contains(&point.u) || [tile.min.v, tile.max.v].contains(&point.v)
 }

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// A normal map with a texel for each node of a tile.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct ReliefMap {
     /// Red, green and blue as glTF has them: along the tangent (east), northwards, and away from the ground.
     pub(crate) png: Vec<u8>,

@@ -14,17 +14,16 @@ use corniche_work::Observer;
 
 use crate::{
     cut::cut_at_bounds,
-    deck_lines::{RaisedLine, on_deck},
-    dem_ground::{DemLine, DemNodes, lay, off_dem_m},
+    deck_lines::{Carrier, lay_on_deck},
+    dem_ground::{DemLine, DemNodes, off_dem_m},
     error::{CoordinatesError, ElevationError, FeaturesError, SelectionError},
     feature::{HeightSource, Road, Smooth, road_fields, road_values},
-    feature_request::{FeatureRequest, RoadFeatures},
-    features::{About, FeatureSource, Features, write_features},
-    grades::{MeasuredChains, SmoothGrades, SmoothLine, Smoothing, most_steps, stretch_of_way},
+    features::{About, FeatureRequest, FeatureSource, Features, RoadFeatures, write_features},
+    grades::{MeasuredChains, SmoothLine, Smoothing, grades_of, most_steps, stretch_of_way},
     heights::{Elevation, dem_heights, height_bound, sample_bound_m},
     join::{Line, lines},
     measures::{Measures, Profiled},
-    piece::{Piece, PieceHeights, PieceKey, Vertex},
+    piece::{Piece, PieceHeights, PieceKey, larger},
     places::Places,
     read,
     road_query::{RoadQuery, named_ways},
@@ -89,25 +88,22 @@ pub fn export_roads(
     let source = FeatureSource::new(package, request)?;
     let named = road.map(|road| named_ways(package, source.level, Some(road), observer));
     let meant = named.transpose()?.map(|named| named.meant);
-    let frame = &manifest.frame;
-    let dem = match heights.elevation {
-        None => None,
-        Some(elevation) => {
-            let mut nodes = DemNodes::new(elevation, frame);
-            let smoothing = Smoothing::of_frame(frame);
-            let measure = |network| {
-                let places = &source.places;
-                MeasuredChains::measure(network, places, &mut nodes, smoothing, observer)
-            };
-            let chains = heights.network.map(measure).transpose()?;
-            let most_steps = most_steps(manifest, source.level);
-            let decks = chains.as_ref().map(MeasuredChains::decks);
-            let free_heights_m = decks.map(least_free_heights).unwrap_or_default();
-            Some(OnDem { nodes, smoothing, chains, most_steps, free_heights_m, deck: None })
-        }
+    let measure = |elevation| -> Result<OnDem<'_>, ElevationError> {
+        let measure =
+            |network| MeasuredChains::measure(network, &source.places, elevation, observer);
+        let chains = heights.network.map(measure).transpose()?;
+        let decks = chains.as_ref().map(|chains| &chains.decks.decks);
+        Ok(OnDem {
+            nodes: DemNodes::new(elevation, &manifest.frame),
+            free_heights_m: decks.map(least_free_heights).unwrap_or_default(),
+            chains,
+            most_steps: most_steps(manifest, source.level),
+            deck: None,
+        })
     };
+    let dem = heights.elevation.map(measure).transpose()?;
     let chains = dem.as_ref().and_then(|dem| dem.chains.as_ref());
-    let spans = chains.map(|chains| chains.span_facts().clone());
+    let spans = chains.map(|chains| chains.decks.facts.clone());
     let mut roads = Roads {
         by_piece: features == RoadFeatures::Pieces,
         meant,
@@ -118,7 +114,7 @@ pub fn export_roads(
             ways: 0,
             length_2d_m: 0.0,
             vertices: 0,
-            heights: source.places.heights().to_owned(),
+            heights: source.places.heights.clone(),
             height_tolerance_m: None,
             sample_tolerance_m: sample_bound_m(manifest, source.level),
             ground_tolerance_m: None,
@@ -141,7 +137,6 @@ struct Roads<'a> {
 /// What heights and grades of the elevation files are made from.
 struct OnDem<'a> {
     nodes: DemNodes<'a>,
-    smoothing: Smoothing,
     chains: Option<MeasuredChains<'a>>,
     /// How far lines may be beside their ways, lattice steps.
     most_steps: f64,
@@ -162,7 +157,7 @@ impl Features for Roads<'_> {
 
     fn about(&self, source: &FeatureSource<'_, FunctionalRoadClass>) -> About {
         let what = if self.by_piece { "Pieces of roads" } else { "Roads" };
-        let (cells, heights) = (source.cells(), source.places.heights());
+        let (cells, heights) = (source.cells(), &source.places.heights);
         let from = if self.dem.is_some() { HeightSource::Dem } else { HeightSource::Ground };
         let laid = match from {
             HeightSource::Ground => format!("laid on terrain with {cells}"),
@@ -172,7 +167,7 @@ impl Features for Roads<'_> {
             fields: road_fields(self.by_piece, from),
             description: format!("{what} {laid}. Heights: {heights}."),
             metadata: vec![
-                ("HEIGHTS", heights.to_owned()),
+                ("HEIGHTS", heights.clone()),
                 ("VERTICAL_DATUM_OF_PACKAGE", source.package.manifest().vertical.datum.clone()),
             ],
         }
@@ -207,7 +202,7 @@ impl Features for Roads<'_> {
             };
             match &mut self.dem {
                 None => found.extend(cut),
-                Some(dem) => found.extend(dem.laid(cut)?),
+                Some(dem) => found.extend(dem.laid(cut, places)?),
             }
         }
         Ok(found)
@@ -246,34 +241,29 @@ impl Features for Roads<'_> {
 
 impl OnDem<'_> {
     /// What is left of a piece, on the ground of the elevation files.
-    fn laid(&mut self, cut: Vec<Piece>) -> Result<Vec<Piece>, ElevationError> {
+    fn laid(&mut self, cut: Vec<Piece>, places: &Places<'_>) -> Result<Vec<Piece>, ElevationError> {
+        let Self { nodes, chains, most_steps, deck, .. } = self;
         let mut laid = Vec::new();
         for piece in cut {
-            let ground_m = off_dem_m(&mut self.nodes, &piece.vertices)?;
+            let ground_m = off_dem_m(nodes, &piece.vertices)?;
             let [first_end, last_end] = piece.goes_on;
-            let structure = piece.attributes.structure;
-            for DemLine { vertices, tolerance_m, has_end: [first, last] } in
-                lay(&mut self.nodes, &piece.vertices)?
+            let (way_id, structure) = (piece.key.way_id, piece.attributes.structure);
+            if let Some(chains) = chains
+                && structure != Structure::Ground
+                && deck.as_ref().is_none_or(|(known, _)| *known != way_id)
             {
-                let raised = match structure {
-                    Structure::Ground => None,
-                    _ => self.raised(piece.key.way_id, structure, &vertices),
-                };
-                let on_deck = raised.is_some();
-                // A deck lies on the ground where that is in its way.
-                let is_on_ground = raised.as_ref().is_none_or(|line| line.is_on_ground);
-                let heights = PieceHeights {
-                    tolerance_m: tolerance_m.filter(|_| is_on_ground),
-                    ground_m,
-                    on_deck,
-                    has_deck: on_deck,
-                };
-                let vertices = raised.map_or(vertices, |line| line.vertices);
+                *deck = Some((way_id, chains.of_way(way_id)));
+            }
+            let way = deck.as_ref().map_or(&[][..], |(_, way)| way);
+            let carrier = Carrier { structure, way, most_steps: *most_steps, is_turned: false };
+            for DemLine { vertices, tolerance_m, has_end: [first, last], on_deck } in
+                lay_on_deck(nodes, &piece.vertices, &carrier, &places.metric())?
+            {
                 laid.push(Piece {
                     key: PieceKey { cut: laid.len() as u32, ..piece.key },
                     vertices,
                     goes_on: [first && first_end, last && last_end],
-                    heights,
+                    heights: PieceHeights { tolerance_m, ground_m, on_deck, has_deck: on_deck },
                     ..piece.clone()
                 });
             }
@@ -281,38 +271,22 @@ impl OnDem<'_> {
         Ok(laid)
     }
 
-    /// A line of a bridge or a tunnel on its deck; `None` where that is not known.
-    fn raised(
-        &mut self,
-        way_id: i64,
-        structure: Structure,
-        ground: &[Vertex],
-    ) -> Option<RaisedLine> {
-        let chains = self.chains.as_ref()?;
-        if self.deck.as_ref().is_none_or(|(known, _)| *known != way_id) {
-            self.deck = Some((way_id, chains.of_way(way_id)));
-        }
-        let (_, way) = self.deck.as_ref()?;
-        let distance_m = |from: [f64; 2], to: [f64; 2]| chains.places().distance_m(from, to);
-        on_deck(structure, ground, (way, self.most_steps), &distance_m)
-    }
-
     /// The grades of lines of a way, of which `way` are the smooth lines where these are known.
     fn smooth(&self, of: &Piece, lines: &[Profiled<'_>], way: &[SmoothLine]) -> Smooth {
-        let limit_pct = grade_limit(&of.attributes.highway);
-        let free_height_m = self.free_heights_m.get(&of.key.way_id).copied();
+        let unknown = Smooth {
+            grades: None,
+            most_off_m: 0.0,
+            is_of_chain: false,
+            limit_pct: grade_limit(&of.attributes.highway),
+            free_height_m: self.free_heights_m.get(&of.key.way_id).copied(),
+        };
         if of.attributes.structure != Structure::Ground && !of.heights.on_deck {
-            return Smooth {
-                grades: None,
-                most_off_m: 0.0,
-                is_of_chain: false,
-                limit_pct,
-                free_height_m,
-            };
+            return unknown;
         }
         let mut parts = Vec::new();
         let mut most_off_m = 0.0_f64;
         let mut is_of_chain = !way.is_empty();
+        let smoothing = Smoothing::of_frame(&self.nodes.frame);
         for Profiled { line, profile } in lines {
             let length_m = profile.last().map_or(0.0, |last| last[0]);
             let found = stretch_of_way(way, &line.vertices, length_m, self.most_steps);
@@ -323,7 +297,7 @@ impl OnDem<'_> {
                 continue;
             }
             let Some([from_m, to_m]) = found else {
-                let own = SmoothLine::of_profile(profile, self.smoothing);
+                let own = SmoothLine::of_profile(profile, smoothing);
                 most_off_m = most_off_m.max(own.most_off_m(profile));
                 parts.push(own);
                 continue;
@@ -338,8 +312,7 @@ impl OnDem<'_> {
                 parts.push(own);
             }
         }
-        let grades = Some(SmoothGrades::of(&parts));
-        Smooth { grades, most_off_m, is_of_chain, limit_pct, free_height_m }
+        Smooth { grades: Some(grades_of(&parts)), most_off_m, is_of_chain, ..unknown }
     }
 }
 
@@ -352,7 +325,7 @@ impl Roads<'_> {
         way: &[SmoothLine],
     ) -> Result<Record, CoordinatesError> {
         let Piece { key, class, attributes, heights, .. } = of;
-        let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
+        let distance_m = places.metric();
         let profiled: Vec<Profiled<'_>> =
             lines.iter().map(|line| Profiled::of(line, &distance_m)).collect();
         let measures = Measures::of(&profiled);
@@ -360,11 +333,8 @@ impl Roads<'_> {
         summary.features += 1;
         summary.length_2d_m += measures.length_2d_m;
         summary.vertices += measures.vertices_out;
-        let most = |one: Option<f64>, other: Option<f64>| {
-            [one, other].into_iter().flatten().reduce(f64::max)
-        };
-        summary.height_tolerance_m = most(summary.height_tolerance_m, heights.tolerance_m);
-        summary.ground_tolerance_m = most(summary.ground_tolerance_m, heights.ground_m);
+        summary.height_tolerance_m = larger(summary.height_tolerance_m, heights.tolerance_m);
+        summary.ground_tolerance_m = larger(summary.ground_tolerance_m, heights.ground_m);
         let piece = tile_of_order(key.tile).filter(|_| self.by_piece).map(|tile| (tile, key.part));
         let road = Road {
             way_id: key.way_id,

@@ -8,7 +8,6 @@
 mod find_route;
 mod graph;
 mod package_network;
-mod road_list;
 
 use corniche_network::Network;
 use corniche_roads::FunctionalRoadClass;
@@ -19,8 +18,7 @@ pub use self::find_route::{Route, RouteRequest};
 use self::{find_route::Finder, graph::RoadGraph, package_network::package_network};
 use crate::{
     error::{RouteError, SelectionError},
-    feature_request::Coordinates,
-    places::Places,
+    places::{Coordinates, Places},
     read,
     road_query::named_ways,
 };

@@ -1,12 +1,72 @@
-//! The pieces of all tiles, sorted by the object that they belong to.
+//! The pieces of all tiles, sorted by the object that they belong to, with an unnamed file as scratch space.
 
-use std::path::Path;
+use std::{
+    fs::File,
+    io::{self, Read as _, Seek as _, SeekFrom, Write as _},
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+};
 
 use corniche_geom::TileId;
-use corniche_store::{Groups, SortRecord, Sorter};
+use corniche_store::{Groups, Scratch, SortRecord, Sorter, Span};
 use corniche_work::{Observer, Stage, workers::one_by_one};
+use serde::{Serialize, de::DeserializeOwned};
 
 use crate::error::FeaturesError;
+
+/// Scratch space in a file without a name, which is gone when the program ends, however it ends.
+pub(crate) struct FileScratch {
+    file: Mutex<File>,
+    folder: PathBuf,
+}
+
+impl FileScratch {
+    /// In a folder where the file has room.
+    pub(crate) fn create(folder: &Path) -> Result<Self, FeaturesError> {
+        let folder = folder.to_path_buf();
+        match tempfile::tempfile_in(&folder) {
+            Ok(file) => Ok(Self { file: Mutex::new(file), folder }),
+            Err(source) => Err(FeaturesError::Sort { folder, source }),
+        }
+    }
+
+    fn failed(&self, source: io::Error) -> FeaturesError {
+        FeaturesError::Sort { folder: self.folder.clone(), source }
+    }
+}
+
+impl Scratch for FileScratch {
+    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let offset = file.seek(SeekFrom::End(0))?;
+        file.write_all(bytes)?;
+        Ok(Span { offset, length: bytes.len() as u64 })
+    }
+
+    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut bytes = vec![0; usize::try_from(span.length).map_err(io::Error::other)?];
+        file.seek(SeekFrom::Start(span.offset))?;
+        file.read_exact(&mut bytes)?;
+        Ok(bytes)
+    }
+}
+
+/// Appends what a record holds, for its way through scratch space.
+pub(crate) fn put(record: &impl Serialize, bytes: &mut Vec<u8>) {
+    let config = bincode::config::standard();
+    // Writing to a list cannot fail.
+    let written = bincode::serde::encode_into_std_write(record, bytes, config);
+    debug_assert!(written.is_ok());
+}
+
+/// Takes from the front of `bytes` what [`put`] appended; `None` where they hold nothing of the kind.
+pub(crate) fn take<T: DeserializeOwned>(bytes: &mut &[u8]) -> Option<T> {
+    let config = bincode::config::standard();
+    let (record, used) = bincode::serde::decode_from_slice(bytes, config).ok()?;
+    *bytes = &bytes[used..];
+    Some(record)
+}
 
 /// The pieces of one object after the other: of a way, or of an area.
 pub(crate) struct SortedPieces<'a, P: SortRecord> {
@@ -14,18 +74,19 @@ pub(crate) struct SortedPieces<'a, P: SortRecord> {
     /// How many pieces there are.
     count: u64,
     /// Where they were sorted.
-    folder: &'a Path,
+    scratch: &'a FileScratch,
 }
 
 impl<'a, P: SortRecord> SortedPieces<'a, P> {
-    /// Reads tiles and sorts the pieces that `pieces` finds in each. `sorter` sorts in `folder`.
+    /// Reads tiles and sorts the pieces that `pieces` finds in each, with `memory_bytes` of memory.
     pub(crate) fn read(
         tiles: &[TileId],
-        (mut sorter, folder): (Sorter<'a, P>, &'a Path),
+        (scratch, memory_bytes): (&'a FileScratch, u64),
         observer: &dyn Observer,
         mut pieces: impl FnMut(TileId) -> Result<Vec<P>, FeaturesError>,
     ) -> Result<Self, FeaturesError> {
-        let failed = |source| FeaturesError::Sort { folder: folder.to_path_buf(), source };
+        let failed = |source| scratch.failed(source);
+        let mut sorter = Sorter::new(scratch, memory_bytes);
         let mut count = 0;
         one_by_one((observer, Stage::ExportTiles), tiles, |&id| {
             for piece in pieces(id)? {
@@ -34,18 +95,17 @@ impl<'a, P: SortRecord> SortedPieces<'a, P> {
             }
             Ok::<(), FeaturesError>(())
         })?;
-        Ok(Self { sorted: Groups::of(sorter.finish().map_err(failed)?), count, folder })
+        Ok(Self { sorted: Groups::of(sorter.finish().map_err(failed)?), count, scratch })
     }
 
-    /// Hands all pieces of each object to `each`, in ascending order. The stage is begun; who calls ends it.
+    /// Hands all pieces of each object to `each`, in ascending order.
     pub(crate) fn for_each<K: PartialEq, E: From<FeaturesError>>(
         mut self,
         observer: &dyn Observer,
         object: impl Fn(&P) -> K,
         mut each: impl FnMut(Vec<P>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let folder = self.folder;
-        let failed = |source| FeaturesError::Sort { folder: folder.to_path_buf(), source };
+        let failed = |source| self.scratch.failed(source);
         observer.begin(Stage::ExportFeatures, Some(self.count));
         while let Some(pieces) = self.sorted.next_by(&object).map_err(failed)? {
             observer.check().map_err(FeaturesError::from)?;

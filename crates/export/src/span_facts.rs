@@ -18,7 +18,7 @@ pub struct SpanFacts {
 }
 
 /// The bridges and tunnels that are told of: those of a package. Others are solved because these depend on them.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(crate) struct ToldSpans {
     /// The numbers of these spans.
     pub(crate) spans: BTreeSet<usize>,

@@ -11,7 +11,6 @@ mod cut;
 mod deck_ends;
 mod divided;
 mod ground;
-mod label_index;
 mod lines;
 mod plan_cut;
 mod ribbon;

@@ -8,7 +8,7 @@ use jpeg_encoder::{ColorType, Encoder};
 use crate::error::SurfaceError;
 
 /// A picture that covers a tile and a little beyond.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct Texture {
     pub(crate) jpeg: Vec<u8>,
     /// The share of its side that lies beyond the tile, on each side.

@@ -15,11 +15,9 @@ mod content;
 mod glb;
 mod parts;
 mod placed;
-mod skirt;
-mod tiles3d_request;
 mod tree;
 mod vector_style;
 mod write_tileset;
 
-pub use tiles3d_request::{TileRoads, Tiles3dRequest};
+pub use content::{TileRoads, Tiles3dRequest};
 pub use write_tileset::{Tiles3dLevel, Tiles3dSummary, export_tiles3d};

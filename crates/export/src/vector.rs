@@ -10,6 +10,6 @@ mod whole;
 
 pub use cell::{cell_text, is_unseen, text_in_line};
 pub use field::{Field, FieldKind};
-pub(crate) use field::{Record, Shape, ShapeKind, Value, fields};
+pub(crate) use field::{Record, Shape, ShapeKind, Value, fields, fields_of, real, text};
 pub(crate) use file::{Layer, VectorFile};
 pub use format::VectorFormat;

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use corniche_geom::LatticePoint;
 
+use crate::join::Following;
+
 type Segment = [LatticePoint; 2];
 
 /// The lines of a way, each of its segments once, from the parts that tiles have of it.
@@ -25,38 +27,21 @@ pub(crate) fn whole_lines<'a>(
     known.sort_unstable();
     known.dedup();
     let number_of = |segment: &Segment| known.binary_search(segment).ok();
-    let mut next = vec![None; known.len()];
-    let mut follows = vec![false; known.len()];
+    let mut following = Following::among(known.len());
     for &[a, b, c] in parts.clone().flat_map(|points| points.array_windows::<3>()) {
         if let (Some(one), Some(other)) = (number_of(&[a, b]), number_of(&[b, c]))
-            && next[one].is_none()
-            && !follows[other]
+            && following.next[one].is_none()
+            && !following.has_before[other]
         {
-            next[one] = Some(other);
-            follows[other] = true;
+            following.join(one, other);
         }
     }
-    // Lines with a beginning first; what is left are rings.
-    let numbers = || segments().filter_map(|segment| number_of(&segment));
-    let beginnings = numbers().filter(|&number| !follows[number]);
-    let mut taken = vec![false; known.len()];
-    let mut lines: Vec<Vec<LatticePoint>> = Vec::new();
-    for beginning in beginnings.chain(numbers()) {
-        let mut line = Vec::new();
-        let mut at = Some(beginning);
-        while let Some(number) = at.filter(|&number| !std::mem::replace(&mut taken[number], true)) {
-            let [from, to] = known[number];
-            if line.is_empty() {
-                line.push(from);
-            }
-            line.push(to);
-            at = next[number];
-        }
-        if !line.is_empty() {
-            lines.push(line);
-        }
-    }
-    join_ends(&lines)
+    let chains = following.chains(segments().filter_map(|segment| number_of(&segment)));
+    let line = |chain: &Vec<usize>| {
+        let ends = chain.iter().map(|&number| known[number][1]);
+        std::iter::once(known[chain[0]][0]).chain(ends).collect()
+    };
+    join_ends(&chains.iter().map(line).collect::<Vec<_>>())
 }
 
 /// Lines go on with others that begin where they end; rings are whole.
@@ -66,30 +51,21 @@ fn join_ends(lines: &[Vec<LatticePoint>]) -> Vec<Vec<LatticePoint>> {
     for (number, line) in lines.iter().enumerate().rev().filter(|(_, line)| is_open(line)) {
         beginnings.entry(line[0]).or_default().push(number);
     }
-    let mut next = vec![None; lines.len()];
-    let mut follows = vec![false; lines.len()];
+    let mut following = Following::among(lines.len());
     for (number, line) in lines.iter().enumerate().filter(|(_, line)| is_open(line)) {
         let at_end = line.last().and_then(|end| beginnings.get_mut(end));
-        next[number] = at_end.and_then(Vec::pop);
-        if let Some(other) = next[number] {
-            follows[other] = true;
+        if let Some(other) = at_end.and_then(Vec::pop) {
+            following.join(number, other);
         }
     }
-    let mut joined = Vec::new();
-    let mut taken = vec![false; lines.len()];
-    let firsts = (0..lines.len()).filter(|&number| !follows[number]);
-    for first in firsts.chain(0..lines.len()) {
-        let mut line: Vec<LatticePoint> = Vec::new();
-        let mut at = Some(first);
-        while let Some(number) = at.filter(|&number| !std::mem::replace(&mut taken[number], true)) {
-            line.extend(&lines[number][usize::from(!line.is_empty())..]);
-            at = next[number];
+    let joined = |chain: &Vec<usize>| {
+        let mut line = lines[chain[0]].clone();
+        for &number in &chain[1..] {
+            line.extend(&lines[number][1..]);
         }
-        if !line.is_empty() {
-            joined.push(line);
-        }
-    }
-    joined
+        line
+    };
+    following.chains(0..lines.len()).iter().map(joined).collect()
 }
 
 #[cfg(test)]

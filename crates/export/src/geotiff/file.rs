@@ -14,7 +14,7 @@ use gdal::{
 use super::grid::{BLOCK, RasterSize};
 use crate::{
     error::GdalFileError,
-    gdal_writing::{GdalSettings, plain_text},
+    gdal_writing::{self, GdalSettings, plain_text},
 };
 
 const DRIVER: &str = "GTiff";
@@ -39,7 +39,6 @@ const OPTIONS: [&str; 8] = [
 ];
 
 /// What the pixels of a raster are.
-#[derive(Debug)]
 pub(crate) struct PixelKind {
     /// Creation options beside [`OPTIONS`].
     options: &'static [&'static str],
@@ -64,37 +63,21 @@ pub(crate) const COLORS: PixelKind = PixelKind {
     no_data: None,
 };
 
-/// A type of the pixels of a raster.
-pub(crate) trait Pixel: GdalType + Copy + Send {
-    fn bytes(self) -> [u8; 8];
-}
+/// What a pixel is.
+pub(crate) trait Pixel: GdalType + bytemuck::Pod + Send {}
 
-/// A type of the pixels of a raster of heights.
+impl Pixel for u8 {}
+impl Pixel for f32 {}
+impl Pixel for f64 {}
+
+/// A height.
 pub(crate) trait Number: Pixel {
     fn of(value: f64) -> Self;
-}
-
-impl Pixel for u8 {
-    fn bytes(self) -> [u8; 8] {
-        u64::from(self).to_le_bytes()
-    }
-}
-
-impl Pixel for f32 {
-    fn bytes(self) -> [u8; 8] {
-        u64::from(self.to_bits()).to_le_bytes()
-    }
 }
 
 impl Number for f32 {
     fn of(value: f64) -> Self {
         value as Self
-    }
-}
-
-impl Pixel for f64 {
-    fn bytes(self) -> [u8; 8] {
-        self.to_le_bytes()
     }
 }
 
@@ -134,8 +117,6 @@ impl<T: Pixel> RasterFile<T> {
         size: RasterSize,
         facts: &RasterFacts,
     ) -> Result<Self, GdalFileError> {
-        corniche_gis::quiet();
-        corniche_gis::forget();
         let settings = GdalSettings::set(&SETTINGS);
         let created =
             create::<T>(path, size, facts).map_err(|error| GdalFileError::write(path, error))?;
@@ -165,12 +146,7 @@ impl<T: Pixel> RasterFile<T> {
     /// Ends the file and reads all of it again: GDAL does not report everything that fails when a file is closed. Tells whether the file names the same CRS.
     pub(crate) fn finish(self) -> Result<bool, GdalFileError> {
         let Self { path, dataset, crs, size, written, .. } = self;
-        // What fails while a file is closed comes back from no call before GDAL 3.7.
-        corniche_gis::forget();
-        dataset.close().map_err(|error| GdalFileError::write(&path, error))?;
-        if let Some(source) = corniche_gis::failure() {
-            return Err(GdalFileError::write(&path, source));
-        }
+        gdal_writing::close(dataset, &path)?;
         let again = read_again::<T>(&path, size, &written, &crs);
         // A file that is cut off may not even be opened.
         if let Ok(Some(is_same_crs)) = again {
@@ -200,8 +176,7 @@ fn create<T: Pixel>(
     )?;
     // Before the georeference, whose keys depend on it.
     dataset.set_metadata_item("AREA_OR_POINT", facts.pixels.area_or_point, "")?;
-    let mut crs = SpatialRef::from_definition(&facts.crs)?;
-    crs.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+    let crs = gdal_writing::east_north(&facts.crs)?;
     dataset.set_spatial_ref(&crs)?;
     dataset.set_geo_transform(&facts.crs_from_pixel)?;
     for (key, value) in &facts.metadata {
@@ -252,8 +227,7 @@ fn read_again<T: Pixel>(
 fn checksum<T: Pixel>(block: &[T], size: RasterSize, place: [usize; 2]) -> u32 {
     let (mut crc, [columns, rows]) = (Crc::new(), size.block_size(place));
     for row in block.chunks(BLOCK).take(rows) {
-        let bytes: Vec<u8> = row[..columns].iter().flat_map(|number| number.bytes()).collect();
-        crc.update(&bytes);
+        crc.update(bytemuck::cast_slice(&row[..columns]));
     }
     crc.sum()
 }

@@ -14,7 +14,7 @@ use crate::{
 pub(crate) const BLOCK: usize = 256;
 
 /// How many pixels a raster has. They are written in blocks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) struct RasterSize {
     pub(crate) columns: usize,
     pub(crate) rows: usize,
@@ -39,10 +39,10 @@ impl RasterSize {
 }
 
 /// A rectangle of finest nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) struct RasterGrid {
     /// North-western node.
-    pub(crate) corner: NodeIndex,
+    corner: NodeIndex,
     pub(crate) columns: usize,
     pub(crate) rows: usize,
 }
@@ -56,10 +56,10 @@ impl RasterGrid {
         let manifest = package.manifest();
         let [mut low, mut high] = manifest.data_nodes();
         if let Some(bounds) = bounds {
-            let failed = |source| CoordinatesError::Crs(Box::new(source));
             let Manifest { crs_wkt, metres_per_unit, frame, .. } = manifest;
             let whole = manifest.whole_data_bounds();
-            let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole).map_err(failed)?;
+            let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, whole)
+                .map_err(CoordinatesError::from)?;
             let asked = nodes_within(
                 bounds.degrees(),
                 crs.working(),
@@ -67,7 +67,7 @@ impl RasterGrid {
                 frame.origin_m(),
                 frame.cell(),
             );
-            let [from, to] = asked.map_err(failed)?;
+            let [from, to] = asked.map_err(CoordinatesError::from)?;
             low = NodeIndex { i: low.i.max(from.i), j: low.j.max(from.j) };
             high = NodeIndex { i: high.i.min(to.i), j: high.j.min(to.j) };
         }

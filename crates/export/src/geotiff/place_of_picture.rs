@@ -25,8 +25,7 @@ impl PlaceOfPicture {
         working_from_pixel: [f64; 6],
     ) -> Result<Self, CoordinatesError> {
         let Manifest { crs_wkt, metres_per_unit, .. } = manifest;
-        let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, manifest.whole_data_bounds())
-            .map_err(|source| CoordinatesError::Crs(Box::new(source)))?;
+        let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, manifest.whole_data_bounds())?;
         let crs_from_pixel = in_units(working_from_pixel, *metres_per_unit);
         Ok(Self { crs_wkt: crs.wkt().to_owned(), crs_from_pixel })
     }

@@ -14,9 +14,8 @@ use super::{
 use crate::{
     bounds::DegreeBounds,
     error::{RasterError, SelectionError},
-    feature_request::Coordinates,
     heights::Elevation,
-    places::Places,
+    places::{Coordinates, Places},
     read,
 };
 
@@ -96,7 +95,7 @@ pub fn export_geotiff(
         pixels,
         error_bound_m: bound_m(manifest, level),
         sample_error: request.elevation.is_some().then(|| written.sums.record()),
-        heights: places.heights().to_owned(),
+        heights: places.heights.clone(),
         has_same_crs: written.has_same_crs,
     })
 }
@@ -159,7 +158,7 @@ fn facts(
         ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
         ("LEVEL", level.to_string()),
         ("ERROR_BOUND_M", bound_m.to_string()),
-        ("HEIGHTS", places.heights().to_owned()),
+        ("HEIGHTS", places.heights.clone()),
         ("VERTICAL_DATUM_OF_PACKAGE", manifest.vertical.datum.clone()),
         ("NODES", manifest.resampling.clone()),
     ];
@@ -171,7 +170,7 @@ fn facts(
     }
     RasterFacts {
         pixels: &HEIGHTS,
-        crs: places.crs().to_owned(),
+        crs: places.wkt.clone(),
         crs_from_pixel: grid.crs_from_pixel(manifest),
         descriptions,
         metadata,

@@ -21,7 +21,7 @@ const MOST_LEGS: usize = 64;
 const MOST_CHAINS: usize = 64;
 
 /// One end of a chain, seen from its node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Leg {
     pub(crate) chain: usize,
     /// Whether the node is at the chain's last station.

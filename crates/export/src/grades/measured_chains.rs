@@ -10,7 +10,6 @@ use corniche_network::{
     Breaks, Chain, ChainLengths, ChainNumber, Chains, Link, Network, NodeNumber,
 };
 use corniche_roads::Structure;
-use corniche_spans::Decks;
 use corniche_work::{Observer, Stage};
 
 use super::{
@@ -21,7 +20,7 @@ use super::{
 };
 use crate::{
     dem_ground::DemNodes, error::ElevationError, heights::Elevation, measures::between,
-    places::Places, span_facts::SpanFacts,
+    places::Places, plane::mix,
 };
 
 /// Chains are told of after so many.
@@ -29,8 +28,8 @@ const TOLD_CHAINS: usize = 1024;
 
 /// The chains of a network, cut where bridges and tunnels begin, with their heights.
 pub(crate) struct MeasuredChains<'a> {
-    network: &'a Network,
-    places: &'a Places<'a>,
+    pub(crate) network: &'a Network,
+    pub(crate) places: &'a Places<'a>,
     chains: Chains,
     smoothing: Smoothing,
     lengths: ChainLengths,
@@ -45,7 +44,7 @@ pub(crate) struct MeasuredChains<'a> {
     /// The nodes at which rings without a junction begin.
     ring_nodes: HashSet<usize>,
     /// Bridges and tunnels, whose supports are as high as the ground there.
-    decks: SpanDecks,
+    pub(crate) decks: SpanDecks,
     /// The nodes of chains that reach the data.
     is_reached: Vec<bool>,
     /// For each chain that is such a ring the distance of their first station from that node: it lies at a place that does not depend on ways.
@@ -59,6 +58,10 @@ struct Along {
 }
 
 impl Along {
+    fn of(places: &Places<'_>, points: Vec<LatticePoint>) -> Self {
+        Self { distances_m: places.distances_m(points.iter().copied()), points }
+    }
+
     fn length_m(&self) -> f64 {
         self.distances_m.last().copied().unwrap_or_default()
     }
@@ -89,39 +92,23 @@ impl<'a> MeasuredChains<'a> {
     pub(crate) fn measure(
         network: &'a Network,
         places: &'a Places<'a>,
-        nodes: &mut DemNodes<'_>,
-        smoothing: Smoothing,
+        Elevation { dem, plan }: Elevation<'_>,
         observer: &dyn Observer,
     ) -> Result<Self, ElevationError> {
+        let manifest = places.manifest;
+        let frame = &manifest.frame;
         // What lies beyond the bounds has a part in what lies within.
-        let Elevation { dem, plan } = nodes.elevation();
-        if plan.clip.is_none() {
-            return Self::measure_on(network, places, nodes, smoothing, observer);
-        }
-        let whole = plan.of_whole_data();
-        let frame = &places.manifest().frame;
-        let mut nodes = DemNodes::new(Elevation { dem, plan: &whole }, frame);
-        Self::measure_on(network, places, &mut nodes, smoothing, observer)
-    }
-
-    fn measure_on(
-        network: &'a Network,
-        places: &'a Places<'a>,
-        nodes: &mut DemNodes<'_>,
-        smoothing: Smoothing,
-        observer: &dyn Observer,
-    ) -> Result<Self, ElevationError> {
+        let plan = if plan.clip.is_some() { plan.of_whole_data() } else { plan.clone() };
+        let nodes = &mut DemNodes::new(Elevation { dem, plan: &plan }, frame);
         let chains = Chains::of(network, Breaks::JunctionsAndStructures);
-        let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
-        let lengths = chains.lengths(network, &distance_m);
-        let manifest = places.manifest();
-        let data = manifest.frame.lattice_bounds(manifest.data_nodes());
+        let lengths = chains.lengths(network, &places.metric());
+        let data = frame.lattice_bounds(manifest.data_nodes());
         let measured = (network, &chains, &lengths);
         let decks = SpanDecks::solve(measured, (places, &data), nodes, observer)?;
         let mut measured = Self {
             network,
             places,
-            smoothing,
+            smoothing: Smoothing::of_frame(frame),
             lengths,
             is_reached: vec![false; network.node_count()],
             starts: vec![0],
@@ -167,7 +154,7 @@ impl<'a> MeasuredChains<'a> {
         }
         measured.nodes_m = node_heights(&measured, observer)?;
         // Lines are held where bridges and tunnels begin: else both sides of a short bridge would be smoothed apart, and the bridge be steep.
-        for &(node, height_m) in measured.decks.supports() {
+        for &(node, height_m) in &measured.decks.supports {
             measured.nodes_m[network.index_of(node)] = height_m;
         }
         measured.above_m = vec![f32::NAN; count];
@@ -256,26 +243,9 @@ impl<'a> MeasuredChains<'a> {
     }
 
     fn along(&self, number: ChainNumber) -> Along {
-        let points = self.network.points_of_chain(&self.chains.get(number));
-        Along { distances_m: self.distances(points.iter().copied()), points }
+        Along::of(self.places, self.network.points_of_chain(&self.chains.get(number)))
     }
 
-    /// The distance of each point of a line from its beginning.
-    fn distances(&self, points: impl Iterator<Item = LatticePoint>) -> Vec<f64> {
-        let mut before: Option<[f64; 2]> = None;
-        let mut along_m = 0.0;
-        points
-            .map(|point| {
-                let at = point.in_steps();
-                if let Some(before) = before.replace(at) {
-                    along_m += self.places.distance_m(before, at);
-                }
-                along_m
-            })
-            .collect()
-    }
-
-    /// Finds the smooth line of a chain on the ground; in parts where there is no ground.
     fn smooth(&mut self, number: ChainNumber) {
         let own = self.stations_of(number);
         let grounds_m: Vec<f64> =
@@ -352,14 +322,13 @@ impl<'a> MeasuredChains<'a> {
         let station = (place.floor() as usize).min(last - 1);
         let share = place - station as f64;
         // A station without ground counts only where it counts for something.
-        let mix = |[from, to]: [f64; 2]| match share {
-            ..=0.0 => from,
-            1.0.. => to,
-            _ => from + share * (to - from),
-        };
         let ends = [station, station + 1].map(|station| own.start + station);
-        let ground_m = mix(ends.map(|at| f64::from(self.grounds_m[at])));
-        [ground_m, ground_m + mix(ends.map(|at| f64::from(self.above_m[at])))]
+        let of = |heights_m: &[f32]| {
+            let [from_m, to_m] = ends.map(|at| f64::from(heights_m[at]));
+            mix(from_m, to_m, share)
+        };
+        let ground_m = of(&self.grounds_m);
+        [ground_m, ground_m + of(&self.above_m)]
     }
 
     /// The smooth lines of a way, with distances along it; in parts where heights are not known. Of a bridge or a tunnel the ground's height is that of
@@ -387,8 +356,7 @@ impl<'a> MeasuredChains<'a> {
         lines: &mut Vec<SmoothLine>,
     ) -> f64 {
         let link = self.chains.get(number).links[index];
-        let points: Vec<LatticePoint> = self.network.points_of_link(link).collect();
-        let along = Along { distances_m: self.distances(points.iter().copied()), points };
+        let along = Along::of(self.places, self.network.points_of_link(link).collect());
         let own_m = along.length_m();
         // Its own points, and the stations of the chain between them.
         let [from_m, _] = self.lengths.links_m[self.chains.place_of(number, index)];
@@ -438,26 +406,22 @@ impl<'a> MeasuredChains<'a> {
             let (number, index) = self.chains.of_link(link);
             let [from_m, _] = self.lengths.links_m[self.chains.place_of(number, index)];
             let own_m = self.link_m(link);
-            if let Some(given) = given.get(&place) {
-                let own = given.iter().map(|&[at_m, height_m]| [begin_m + at_m, height_m]);
-                profile.extend(own.skip(usize::from(!profile.is_empty())));
-                begin_m += own_m;
-                continue;
-            }
             let is_turned = self.chains.get(number).links[index].is_against != link.is_against;
-            let mut own: Vec<[f64; 2]> = self
-                .distances_within(number, [from_m, from_m + own_m])
-                .into_iter()
-                .map(|at_m| {
+            let own = given.get(&place).cloned().unwrap_or_else(|| {
+                let within = self.distances_within(number, [from_m, from_m + own_m]);
+                let place = |at_m| {
                     let [_, height_m] = self.heights_at(number, at_m);
                     let at_m = at_m - from_m;
-                    [begin_m + if is_turned { own_m - at_m } else { at_m }, height_m]
-                })
-                .collect();
-            if is_turned {
-                own.reverse();
-            }
-            profile.extend(own.into_iter().skip(usize::from(!profile.is_empty())));
+                    [if is_turned { own_m - at_m } else { at_m }, height_m]
+                };
+                let mut own: Vec<[f64; 2]> = within.into_iter().map(place).collect();
+                if is_turned {
+                    own.reverse();
+                }
+                own
+            });
+            let own = own.into_iter().map(|[at_m, height_m]| [begin_m + at_m, height_m]);
+            profile.extend(own.skip(usize::from(!profile.is_empty())));
             begin_m += own_m;
         }
         profile.iter().all(|[_, height_m]| height_m.is_finite()).then_some(profile)
@@ -465,7 +429,7 @@ impl<'a> MeasuredChains<'a> {
 
     /// The true length of a link in plan.
     pub(crate) fn link_m(&self, link: Link) -> f64 {
-        self.distances(self.network.points_of_link(link)).last().copied().unwrap_or_default()
+        self.places.length_m(self.network.points_of_link(link))
     }
 
     /// Two distances along a chain, and those of the stations between them; of a bridge or a tunnel those at which it bends.
@@ -488,19 +452,9 @@ impl<'a> MeasuredChains<'a> {
         Some(self.nodes_m[self.network.index_of(node)]).filter(|height_m| height_m.is_finite())
     }
 
-    /// Bridges and tunnels, whose supports are as high as the ground there.
-    pub(crate) fn decks(&self) -> &Decks {
-        self.decks.decks()
-    }
-
-    /// What is told of bridges and tunnels.
-    pub(crate) fn span_facts(&self) -> &SpanFacts {
-        self.decks.facts()
-    }
-
     /// Whether an edge of the network reaches the package's data.
     pub(crate) fn reaches(&self, chain: &Chain<'_>) -> bool {
-        let manifest = self.places.manifest();
+        let manifest = self.places.manifest;
         self.network.reaches(chain, &manifest.frame.lattice_bounds(manifest.data_nodes()))
     }
 
@@ -510,16 +464,6 @@ impl<'a> MeasuredChains<'a> {
         let mut lines = vec![SmoothLine::default()];
         self.add_stretch(number, index, 0.0, &mut lines);
         lines
-    }
-
-    /// Where lattice points lie.
-    pub(crate) fn places(&self) -> &'a Places<'a> {
-        self.places
-    }
-
-    /// The network.
-    pub(crate) fn network(&self) -> &'a Network {
-        self.network
     }
 }
 
@@ -548,44 +492,17 @@ impl Legs for MeasuredChains<'_> {
     }
 
     fn direction(&self, Leg { chain, is_last }: Leg) -> [f64; 2] {
-        let links = self.chains.get(ChainNumber(chain)).links;
-        let of_link = |link: &Link| self.network.points_of_link(*link).collect::<Vec<_>>();
-        let mut points: Vec<LatticePoint> = Vec::new();
-        let steps = self.direction_steps();
-        let is_far = |points: &[LatticePoint]| match points {
-            [first, .., last] => first.distance_steps(*last) >= steps,
-            _ => false,
-        };
-        for k in 0..links.len() {
-            let link = &links[if is_last { links.len() - 1 - k } else { k }];
-            let mut own = of_link(link);
-            if is_last {
-                own.reverse();
-            }
-            for point in own {
-                points.push(point);
-                if is_far(&points) {
-                    break;
-                }
-            }
-            if is_far(&points) {
-                break;
-            }
+        let mut points = self.network.points_of_chain(&self.chains.get(ChainNumber(chain)));
+        if is_last {
+            points.reverse();
         }
-        match points[..] {
-            [first, .., last] => {
-                let run = [(last.u - first.u) as f64, (last.v - first.v) as f64];
-                let length = run[0].hypot(run[1]);
-                if length > 0.0 { run.map(|part| part / length) } else { [0.0; 2] }
-            }
-            _ => [0.0; 2],
-        }
-    }
-}
-
-impl MeasuredChains<'_> {
-    /// The direction of a leg is that of its first ten metres or so.
-    fn direction_steps(&self) -> f64 {
-        10.0 / self.places.manifest().frame.lattice_step_m()
+        // That of its first ten metres or so.
+        let least_steps = 10.0 / self.places.manifest.frame.lattice_step_m();
+        let from = points[0];
+        let far = points.iter().find(|point| from.distance_steps(**point) >= least_steps);
+        let to = far.unwrap_or(&points[points.len() - 1]);
+        let run = [(to.u - from.u) as f64, (to.v - from.v) as f64];
+        let length = run[0].hypot(run[1]);
+        if length > 0.0 { run.map(|part| part / length) } else { [0.0; 2] }
     }
 }

@@ -6,7 +6,10 @@ use super::{
     smooth_line::{SmoothLine, Station},
     smoothing::MOST_SPACING_M,
 };
-use crate::piece::Vertex;
+use crate::{
+    piece::Vertex,
+    plane::{self, vector},
+};
 
 /// Places of a way that are at most so much farther from an end of a line than the nearest one may be where it lies, lattice steps: half a metre.
 const ALIKE_STEPS: f64 = 500.0;
@@ -58,12 +61,7 @@ fn distances_near(way: &[SmoothLine], at: [f64; 2], most_steps: f64) -> Vec<f64>
 
 /// How near a segment comes to a place, lattice steps, and at which distance along the way.
 fn nearest(from: Station, to: Station, at: [f64; 2]) -> [f64; 2] {
-    let run = [to.at[0] - from.at[0], to.at[1] - from.at[1]];
-    let off = [at[0] - from.at[0], at[1] - from.at[1]];
-    let square = run[0].powi(2) + run[1].powi(2);
-    let share = if square > 0.0 { (run[0] * off[0] + run[1] * off[1]) / square } else { 0.0 };
-    let share = share.clamp(0.0, 1.0);
-    let steps = (off[0] - share * run[0]).hypot(off[1] - share * run[1]);
+    let [share, steps] = plane::nearest(vector(from.at, to.at), vector(from.at, at));
     // To the bit at its end, as lines are looked up by it.
     let along_m =
         if share >= 1.0 { to.along_m } else { from.along_m + share * (to.along_m - from.along_m) };

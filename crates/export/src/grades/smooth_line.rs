@@ -1,7 +1,10 @@
 //! A smooth line, and what is measured of a part of it.
 
 use super::smoothing::{MOST_SPACING_M, Smoothing};
-use crate::measures::{between, steepest};
+use crate::{
+    measures::{ProfileGrades, between},
+    plane::along,
+};
 
 /// The steepest grade of a smooth line is taken over this length, metres.
 pub(crate) const GRADE_LENGTH_M: f64 = 50.0;
@@ -23,17 +26,6 @@ pub(crate) struct Station {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct SmoothLine {
     pub(crate) stations: Vec<Station>,
-}
-
-/// What is measured of smooth lines.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct SmoothGrades {
-    /// Metres upwards, all of them together.
-    pub(crate) ascent_m: f64,
-    /// The same downwards.
-    pub(crate) descent_m: f64,
-    /// Steepest grade over [`GRADE_LENGTH_M`] or more, rise over run without sign; `None` where no line is as long.
-    pub(crate) steepest: Option<f64>,
 }
 
 impl SmoothLine {
@@ -78,12 +70,8 @@ impl SmoothLine {
 
     /// How far it is from a line with the same distances at most, metres, between the stations and vertices of both, too.
     pub(crate) fn most_off_m(&self, profile: &[[f64; 2]]) -> f64 {
-        let (Some(first), Some(last)) = (self.stations.first(), self.stations.last()) else {
-            return 0.0;
-        };
-        // Both are straight between stations and vertices: they are farthest apart at one of them.
-        let is_along =
-            |[along_m, _]: &&[f64; 2]| *along_m >= first.along_m && *along_m <= last.along_m;
+        let Some([begin_m, end_m]) = self.ends_m() else { return 0.0 };
+        let is_along = |[along_m, _]: &&[f64; 2]| *along_m >= begin_m && *along_m <= end_m;
         let at_vertices = profile.iter().filter(is_along);
         let at_vertices = at_vertices.map(|&[along_m, height_m]| self.height_m(along_m) - height_m);
         let mut after = 1;
@@ -118,8 +106,13 @@ impl SmoothLine {
         part
     }
 
+    /// The distances at which it begins and ends.
+    fn ends_m(&self) -> Option<[f64; 2]> {
+        Some([self.stations.first()?.along_m, self.stations.last()?.along_m])
+    }
+
     /// Its distances and heights.
-    pub(crate) fn profile(&self) -> Vec<[f64; 2]> {
+    fn profile(&self) -> Vec<[f64; 2]> {
         self.stations.iter().map(|station| [station.along_m, station.height_m]).collect()
     }
 
@@ -130,8 +123,7 @@ impl SmoothLine {
 
     /// Whether it lies along a whole stretch of its way.
     pub(crate) fn reaches(&self, [from_m, to_m]: [f64; 2]) -> bool {
-        let ends = self.stations.first().zip(self.stations.last());
-        ends.is_some_and(|(first, last)| first.along_m <= from_m && to_m <= last.along_m)
+        self.ends_m().is_some_and(|[begin_m, end_m]| begin_m <= from_m && to_m <= end_m)
     }
 
     /// The place at a distance, or the nearest end beyond them; `None` of an empty line.
@@ -144,10 +136,7 @@ impl SmoothLine {
 
     /// Rise over run of 50 m around a distance, or of what the line has of them.
     pub(crate) fn grade(&self, along_m: f64) -> f64 {
-        let ends = self.stations.first().zip(self.stations.last());
-        let Some([begin_m, end_m]) = ends.map(|(first, last)| [first.along_m, last.along_m]) else {
-            return f64::NAN;
-        };
+        let Some([begin_m, end_m]) = self.ends_m() else { return f64::NAN };
         let half_m = GRADE_LENGTH_M / 2.0;
         let middle_m = along_m.min(end_m - half_m).max(begin_m + half_m);
         let [from_m, to_m] =
@@ -157,21 +146,9 @@ impl SmoothLine {
     }
 }
 
-impl SmoothGrades {
-    /// The measures of some lines together.
-    pub(crate) fn of(lines: &[SmoothLine]) -> Self {
-        let mut all = Self::default();
-        for line in lines {
-            for [from, to] in line.stations.array_windows::<2>() {
-                let rise_m = to.height_m - from.height_m;
-                all.ascent_m += rise_m.max(0.0);
-                all.descent_m += (-rise_m).max(0.0);
-            }
-            let grades = [all.steepest, steepest(&line.profile(), GRADE_LENGTH_M)];
-            all.steepest = grades.into_iter().flatten().reduce(f64::max);
-        }
-        all
-    }
+/// What is measured of smooth lines, over [`GRADE_LENGTH_M`] or more of each.
+pub(crate) fn grades_of(lines: &[SmoothLine]) -> ProfileGrades {
+    ProfileGrades::of(lines.iter().map(SmoothLine::profile), GRADE_LENGTH_M)
 }
 
 impl Station {
@@ -179,18 +156,16 @@ impl Station {
     fn towards(self, to: Self, along_m: f64) -> Self {
         let run_m = to.along_m - self.along_m;
         let share = if run_m > 0.0 { (along_m - self.along_m) / run_m } else { 0.0 };
-        if share <= 0.0 {
-            return self;
-        }
-        if share >= 1.0 {
-            return to;
-        }
         let mix = |from: f64, to: f64| from + share * (to - from);
-        Self {
-            at: [0, 1].map(|axis| mix(self.at[axis], to.at[axis])),
-            along_m,
-            height_m: mix(self.height_m, to.height_m),
-            ground_m: mix(self.ground_m, to.ground_m),
+        match share {
+            ..=0.0 => self,
+            1.0.. => to,
+            _ => Self {
+                at: along(self.at, to.at, share),
+                along_m,
+                height_m: mix(self.height_m, to.height_m),
+                ground_m: mix(self.ground_m, to.ground_m),
+            },
         }
     }
 }

@@ -18,15 +18,15 @@ fn hill() -> SmoothLine {
 
 #[test]
 fn grades_of_a_hill() {
-    let all = SmoothGrades::of(&[hill()]);
+    let all = grades_of(&[hill()]);
     assert!((all.ascent_m - 20.0).abs() < 1e-9 && all.descent_m.abs() < 1e-9);
     assert!((all.steepest.unwrap() - 0.1).abs() < 1e-12);
     assert!((hill().grade(20.0) - 0.1).abs() < 1e-12);
     assert!((hill().grade(200.0) - 0.05).abs() < 1e-12);
     assert!(hill().grade(300.0).abs() < 1e-12);
-    assert_eq!(SmoothGrades::of(&[hill().part([0.0, 49.0])]).steepest, None);
-    assert_eq!(SmoothGrades::of(&[hill().part([100.0, 149.0])]).steepest, None);
-    assert_eq!(SmoothGrades::of(&[]), SmoothGrades::default());
+    assert_eq!(grades_of(&[hill().part([0.0, 49.0])]).steepest, None);
+    assert_eq!(grades_of(&[hill().part([100.0, 149.0])]).steepest, None);
+    assert_eq!(grades_of(&[]), ProfileGrades::default());
     assert!(SmoothLine::default().height_m(3.0).is_nan());
 }
 
@@ -34,7 +34,7 @@ fn grades_of_a_hill() {
 fn parts_add_up_to_the_whole() {
     for cut_m in [0.0, 3.0, 40.0, 197.3, 300.0] {
         let parts = [[0.0, cut_m], [cut_m, 300.0]].map(|part| hill().part(part));
-        let [one, other] = parts.map(|part| SmoothGrades::of(&[part]).ascent_m);
+        let [one, other] = parts.map(|part| grades_of(&[part]).ascent_m);
         assert!((one + other - 20.0).abs() < 1e-9, "{cut_m}: {one} {other}");
     }
     assert!(hill().part([400.0, 500.0]).stations.is_empty());

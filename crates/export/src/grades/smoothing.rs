@@ -12,7 +12,7 @@ use corniche_geom::GridFrame;
 pub(crate) const MOST_SPACING_M: f64 = 10.0;
 
 /// How much is smoothed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct Smoothing {
     /// The length of waves of which half is left, metres.
     pub(crate) length_m: f64,
@@ -20,7 +20,7 @@ pub(crate) struct Smoothing {
 
 impl Smoothing {
     /// What suits an elevation model with cells as long as this: 4.5 cells, and at least 100 m and at most 400 m.
-    pub(crate) fn of_cell(cell_m: f64) -> Self {
+    fn of_cell(cell_m: f64) -> Self {
         Self { length_m: (4.5 * cell_m).clamp(100.0, 400.0) }
     }
 
@@ -81,7 +81,7 @@ impl Smoothing {
 }
 
 /// A height with its weight.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct Estimate {
     pub(crate) height_m: f64,
     pub(crate) weight: f64,

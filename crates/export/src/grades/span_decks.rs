@@ -14,6 +14,7 @@ use crate::{
     dem_ground::DemNodes,
     error::ElevationError,
     places::Places,
+    plane::mix,
     span_facts::{SpanFacts, ToldSpans},
 };
 
@@ -23,7 +24,7 @@ const TOLD_PLACES: usize = 1024;
 const SAME_M: f64 = 1e-6;
 
 /// A part of a chain, and the same part of a chain of the other network.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 struct ChainPart {
     /// Where it begins and ends along the chain, ascending.
     own_m: [f64; 2],
@@ -34,15 +35,15 @@ struct ChainPart {
 
 /// Decks by the chains of a network.
 pub(crate) struct SpanDecks {
-    decks: Decks,
+    pub(crate) decks: Decks,
     parts: BTreeMap<ChainNumber, Vec<ChainPart>>,
     /// The nodes of the network at which its bridges and tunnels are carried, with their heights.
-    supports: Vec<(NodeNumber, f64)>,
-    facts: SpanFacts,
+    pub(crate) supports: Vec<(NodeNumber, f64)>,
+    pub(crate) facts: SpanFacts,
 }
 
 /// A stretch of a road: its chain, where it begins and ends along the road, and where these places are along the chain.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 struct Stretch {
     chain: ChainNumber,
     along_m: [f64; 2],
@@ -63,7 +64,7 @@ impl SpanDecks {
         let network = own.0;
         let of_spans = network.of_spans();
         let of_spans_chains = Chains::of(of_spans, Breaks::JunctionsAndStructures);
-        let distance_m = |from: [f64; 2], to: [f64; 2]| places.distance_m(from, to);
+        let distance_m = places.metric();
         let spans = Spans::find(of_spans, &of_spans_chains, &distance_m);
         let crossings = crossings(of_spans, &of_spans_chains, &distance_m);
         let wanted: Vec<[f64; 2]> = Decks::places(&spans, &crossings).collect();
@@ -117,21 +118,6 @@ impl SpanDecks {
         Ok(Self { decks, parts, supports, facts })
     }
 
-    /// The decks in the network in which they were solved.
-    pub(crate) fn decks(&self) -> &Decks {
-        &self.decks
-    }
-
-    /// The nodes of the network at which its bridges and tunnels are carried, with their heights.
-    pub(crate) fn supports(&self) -> &[(NodeNumber, f64)] {
-        &self.supports
-    }
-
-    /// What is told of them.
-    pub(crate) fn facts(&self) -> &SpanFacts {
-        &self.facts
-    }
-
     /// The height at a distance along a chain, as if there were no ground; `None` on the ground, and where it is not known.
     pub(crate) fn height_m(&self, chain: ChainNumber, along_m: f64) -> Option<f64> {
         let parts = self.parts.get(&chain)?;
@@ -175,11 +161,7 @@ impl ChainPart {
 /// Carries a place from one range to another.
 fn carried(at_m: f64, [from_m, to_m]: [f64; 2], [other_from_m, other_to_m]: [f64; 2]) -> f64 {
     let share = ((at_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0);
-    match share {
-        ..=0.0 => other_from_m,
-        1.0.. => other_to_m,
-        _ => other_from_m + share * (other_to_m - other_from_m),
-    }
+    mix(other_from_m, other_to_m, share)
 }
 
 /// The stretches of a road, in its order.

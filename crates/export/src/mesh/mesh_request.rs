@@ -8,7 +8,7 @@ use corniche_tileset::Manifest;
 
 use crate::{
     bounds::DegreeBounds,
-    gltf::{SLAB_COLOR, SLAB_NAME},
+    gltf::{SLAB_COLOR, SLAB_NAME, y_up},
     surfaces::SurfaceKind,
 };
 
@@ -66,13 +66,10 @@ pub enum UpAxis {
 
 impl UpAxis {
     /// A vector of east, north and up along the model's axes.
-    pub(crate) fn along_axes<T: std::ops::Neg<Output = T>>(
-        self,
-        [east, north, up]: [T; 3],
-    ) -> [T; 3] {
+    pub(crate) fn along_axes<T: std::ops::Neg<Output = T>>(self, at: [T; 3]) -> [T; 3] {
         match self {
-            Self::Y => [east, up, -north],
-            Self::Z => [east, north, up],
+            Self::Y => y_up(at),
+            Self::Z => at,
         }
     }
 }
@@ -89,7 +86,7 @@ pub enum ModelRoads {
 }
 
 /// Colours of what a model has.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(crate) struct ModelColors {
     /// Colours of the roads of each class.
     roads: [Rgb; FunctionalRoadClass::COUNT],

@@ -1,13 +1,10 @@
 //! One tile of a model: its corners, triangles and roads, its photo and its relief.
 
-use corniche_geom::{LatticePoint, TileId};
+use corniche_geom::{Bounds, LatticePoint, TileId};
 use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::{FilePackage, Sections};
+use corniche_tileset::{FilePackage, Manifest, Sections};
 
-use super::{
-    local::LocalMetres,
-    mesh_request::{GROUND_COLOR, MeshFormat, MeshRequest, ModelRoads},
-};
+use super::mesh_request::{GROUND_COLOR, MeshFormat, MeshRequest, ModelRoads};
 use crate::{
     cut::cut_at_bounds,
     error::SurfaceError,
@@ -18,6 +15,55 @@ use crate::{
     surfaces::{Divided, SurfaceKind, TileLines, across},
     texture::Texture,
 };
+
+/// Local metres of a model: true metres east and north of its origin along the axes of the package's CRS, and true heights.
+///
+/// One number along each axis makes true metres of working metres: that of the middle of the data. Elsewhere the package's
+/// [scale](corniche_tileset::ScaleRecord) says by how much they differ.
+#[derive(Clone, Copy)]
+pub(crate) struct LocalMetres {
+    /// The origin, working metres; whole numbers.
+    origin_m: [f64; 2],
+    /// Working metres to a true metre, east and north.
+    scale: [f64; 2],
+}
+
+impl LocalMetres {
+    /// Local metres whose origin is in the middle of some ground.
+    pub(crate) fn about(ground: Bounds, manifest: &Manifest) -> Self {
+        Self { origin_m: ground.center().map(f64::round), scale: manifest.scale.center }
+    }
+
+    /// A position in working metres and a height.
+    fn of(&self, [x, y]: [f64; 2], height_m: f64) -> [f64; 3] {
+        let [east, north] = self.scale;
+        [(x - self.origin_m[0]) / east, (y - self.origin_m[1]) / north, height_m]
+    }
+
+    /// The origin in the package's CRS.
+    pub(crate) fn origin(&self, manifest: &Manifest) -> [f64; 2] {
+        [0, 1].map(|axis| self.origin_m[axis] / manifest.metres_per_unit[axis])
+    }
+
+    /// What a model says of its coordinates, as pairs of a name and a text.
+    pub(crate) fn described(&self, manifest: &Manifest) -> Vec<(&'static str, String)> {
+        let [x, y] = self.origin(manifest);
+        let [lon, lat] = manifest.coordinates.wgs84_from_working(self.origin_m);
+        let scale = &manifest.scale;
+        vec![
+            ("crs", manifest.crs.clone()),
+            ("origin", format!("{x} {y}")),
+            ("origin_lon_lat", format!("{lon:.9} {lat:.9}")),
+            ("unit", "metre".to_owned()),
+            ("scale_center", format!("{} {}", scale.center[0], scale.center[1])),
+            ("scale_least", format!("{} {}", scale.least[0], scale.least[1])),
+            ("scale_largest", format!("{} {}", scale.largest[0], scale.largest[1])),
+            ("heights", format!("as in the package, metres (datum: {})", manifest.vertical.datum)),
+            ("attribution", manifest.attribution.join("; ")),
+            ("generator", manifest.generator.clone()),
+        ]
+    }
+}
 
 /// What a model has of a tile: east, north and up in local metres.
 pub(crate) struct TileMesh {
@@ -50,7 +96,7 @@ pub(crate) struct ReliefPicture {
 }
 
 /// A corner of the ground or of a slab.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct Corner {
     pub(crate) at_m: [f64; 3],
     pub(crate) normal: [f32; 3],
@@ -113,8 +159,7 @@ impl TileReading<'_> {
                     let (vertex, at) = (&mesh.vertices[corner as usize], on_lattice(corner));
                     // All vertices lie on the lattice.
                     let point = LatticePoint::new(at[0] as i64, at[1] as i64);
-                    let is_on_border = [tile.min.u, tile.max.u].contains(&point.u)
-                        || [tile.min.v, tile.max.v].contains(&point.v);
+                    let is_on_border = read::is_on_border(point, &tile);
                     acrosses.push(across(at, &tile));
                     corners.push(Corner {
                         at_m: local.of(frame.position_of_fraction_m(at), vertex.height_m),

@@ -10,7 +10,7 @@ use std::{
 use super::{
     mesh_request::{UpAxis, group_name},
     model::TileMesh,
-    writer::{About, MeshWriter, Spill, Welding},
+    writer::{Facts, MeshWriter, Spill, Welding},
 };
 use crate::{surfaces::SurfaceKind, vector::text_in_line};
 
@@ -83,12 +83,12 @@ impl MeshWriter for ObjWriter {
             }
             text.push('\n');
         }
-        lines.push(text.as_bytes())
+        lines.write_all(text.as_bytes())
     }
 
-    fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()> {
+    fn finish(self: Box<Self>, into: &mut dyn Write, facts: &Facts) -> io::Result<()> {
         let mut into = into;
-        for (name, text) in &about.facts {
+        for (name, text) in facts {
             writeln!(into, "# {name}: {}", text_in_line(text))?;
         }
         if let Some(file) = &self.material_file {

@@ -11,7 +11,7 @@ use std::{
 use super::{
     mesh_request::{ModelColors, UpAxis},
     model::TileMesh,
-    writer::{About, MeshWriter, Spill, Welding},
+    writer::{Facts, MeshWriter, Spill, Welding},
 };
 use crate::surfaces::SurfaceKind;
 
@@ -39,12 +39,12 @@ struct Vertices {
 impl Vertices {
     fn add(&mut self, up: UpAxis, at_m: [f64; 3], normal: [f32; 3], class: u8) -> io::Result<u32> {
         for part in up.along_axes(at_m) {
-            self.spill.push(&part.to_le_bytes())?;
+            self.spill.write_all(&part.to_le_bytes())?;
         }
         for part in up.along_axes(normal) {
-            self.spill.push(&part.to_le_bytes())?;
+            self.spill.write_all(&part.to_le_bytes())?;
         }
-        self.spill.push(&[class])?;
+        self.spill.write_all(&[class])?;
         let number = self.count;
         // Numbers of vertices are signed in many programs.
         if number == i32::MAX as u32 {
@@ -77,9 +77,9 @@ impl MeshWriter for PlyWriter {
             .welding
             .numbers(tile, |corner| vertices.add(up, corner.at_m, corner.normal, NO_ROAD))?;
         for (triangle, kind) in tile.triangles.iter().zip(&tile.kinds) {
-            self.faces.push(&[3])?;
+            self.faces.write_all(&[3])?;
             for corner in triangle {
-                self.faces.push(&numbers[*corner as usize].to_le_bytes())?;
+                self.faces.write_all(&numbers[*corner as usize].to_le_bytes())?;
             }
             if let Some(colors) = &self.colors {
                 let number = match kind {
@@ -87,8 +87,8 @@ impl MeshWriter for PlyWriter {
                     SurfaceKind::Road(class) | SurfaceKind::Slab(class) => class.number(),
                 };
                 let color = colors.of(*kind);
-                self.faces.push(&[number])?;
-                self.faces.push(&color.map(|channel| (channel * 255.0).round() as u8))?;
+                self.faces.write_all(&[number])?;
+                self.faces.write_all(&color.map(|channel| (channel * 255.0).round() as u8))?;
             }
         }
         self.face_count += tile.triangles.len() as u64;
@@ -97,8 +97,8 @@ impl MeshWriter for PlyWriter {
             for point in &road.points_m {
                 let number = self.vertices.add(up, *point, UPWARDS, road.class.number())?;
                 if let Some(before) = before.replace(number) {
-                    self.edges.push(&u32::to_le_bytes(before))?;
-                    self.edges.push(&number.to_le_bytes())?;
+                    self.edges.write_all(&u32::to_le_bytes(before))?;
+                    self.edges.write_all(&number.to_le_bytes())?;
                     self.edge_count += 1;
                 }
             }
@@ -106,11 +106,11 @@ impl MeshWriter for PlyWriter {
         Ok(())
     }
 
-    fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()> {
+    fn finish(self: Box<Self>, into: &mut dyn Write, facts: &Facts) -> io::Result<()> {
         let Self { colors, vertices, faces, edges, face_count, edge_count, .. } = *self;
         let mut into = into;
         writeln!(into, "ply\nformat binary_little_endian 1.0")?;
-        for (name, text) in &about.facts {
+        for (name, text) in facts {
             // A comment ends with its line.
             writeln!(into, "comment {name}: {}", text.replace(['\n', '\r'], " "))?;
         }

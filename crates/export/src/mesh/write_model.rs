@@ -8,17 +8,15 @@ use corniche_work::{Observer, Stage, workers::one_by_one};
 
 use super::{
     glb::GlbWriter,
-    local::LocalMetres,
     mesh_request::{MeshFormat, MeshRequest, ModelRoads, UpAxis},
-    model::TileReading,
+    model::{LocalMetres, TileReading},
     obj::ObjWriter,
     ply::PlyWriter,
-    writer::{About, MeshWriter},
+    writer::MeshWriter,
 };
 use crate::{
     error::{MeshError, SelectionError},
-    feature_request::Coordinates,
-    places::Places,
+    places::{Coordinates, Places},
     read,
     surfaces::{RoadLook, SurfaceKind, TileLines},
 };
@@ -104,7 +102,7 @@ pub fn export_mesh(
     };
     facts.push(("axes", up.to_owned()));
     let mut file = BufWriter::new(File::create(path).map_err(failed)?);
-    writer.finish(&mut file, &About { facts }).map_err(failed)?;
+    writer.finish(&mut file, &facts).map_err(failed)?;
     file.into_inner().map_err(|error| failed(error.into_error()))?.sync_all().map_err(failed)?;
     Ok(summary)
 }

@@ -12,23 +12,13 @@ use corniche_geom::LatticePoint;
 
 use super::model::{Corner, TileMesh};
 
-/// What a model says of itself.
-pub(crate) struct About<'a> {
-    /// Names and texts.
-    pub(crate) facts: Vec<(&'a str, String)>,
-}
-
-impl About<'_> {
-    pub(crate) fn fact(&self, name: &str) -> &str {
-        let found = self.facts.iter().find(|(own, _)| *own == name);
-        found.map_or("", |(_, text)| text.as_str())
-    }
-}
+/// What is said of a model, in order: names and texts.
+pub(crate) type Facts = [(&'static str, String)];
 
 /// Makes a file of tiles.
 pub(crate) trait MeshWriter {
     fn tile(&mut self, tile: &TileMesh) -> io::Result<()>;
-    fn finish(self: Box<Self>, into: &mut dyn Write, about: &About<'_>) -> io::Result<()>;
+    fn finish(self: Box<Self>, into: &mut dyn Write, facts: &Facts) -> io::Result<()>;
 }
 
 /// Gives the corners of all tiles numbers, one to those that tiles share: positions there are the same to the bit.
@@ -73,22 +63,23 @@ impl Spill {
         Ok(Self { file: BufWriter::new(file), length: 0 })
     }
 
-    /// How many bytes there are.
-    pub(crate) fn length(&self) -> u64 {
-        self.length
-    }
-
-    /// Appends bytes.
-    pub(crate) fn push(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.length += bytes.len() as u64;
-        self.file.write_all(bytes)
-    }
-
     /// Copies all of it.
     pub(crate) fn copy_to(self, into: &mut impl Write) -> io::Result<()> {
         let mut file = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
         file.seek(SeekFrom::Start(0))?;
         let copied = io::copy(&mut file, into)?;
         if copied == self.length { Ok(()) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
+    }
+}
+
+impl Write for Spill {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.length += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
     }
 }

@@ -85,19 +85,6 @@ impl ProfileLeg {
     }
 }
 
-/// The legs of a part without gaps, as numbers with where they begin and end, from the distance of each of its points and the number of its leg; what
-/// lies between two points belongs to the leg of the second.
-pub(crate) fn legs_of(distances_m: &[f64], numbers: &[usize]) -> Vec<(usize, [f64; 2])> {
-    let mut legs: Vec<(usize, [f64; 2])> = Vec::new();
-    for (&[begin_m, end_m], &number) in distances_m.array_windows().zip(numbers.iter().skip(1)) {
-        match legs.last_mut() {
-            Some((before, range_m)) if *before == number => range_m[1] = end_m,
-            _ => legs.push((number, [begin_m, end_m])),
-        }
-    }
-    legs
-}
-
 /// Runs, each with its smooth line, of which one that begins where the one before ends, and as high, goes on with it: so grades are taken over the
 /// whole profile, not leg by leg.
 pub(crate) fn joined_runs(

@@ -9,8 +9,8 @@ use super::tiling::TerrainTile;
 /// Columns from … to, in rows from … to, both included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Block {
-    pub(crate) columns: [u32; 2],
-    pub(crate) rows: [u32; 2],
+    columns: [u32; 2],
+    rows: [u32; 2],
 }
 
 /// The tiles of each level up to the finest in rectangles, each tile in one of them.

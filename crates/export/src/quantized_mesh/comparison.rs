@@ -11,10 +11,14 @@ use super::{
     raster::{Sample, nearest_steps},
     tiling::{LAST_STEP, Square, is_in_tile},
 };
-use crate::globe::{between, dot, geocentric_m, unit};
+use crate::{
+    bounds::clip,
+    globe::{between, dot, geocentric_m, unit},
+    plane::along,
+};
 
 /// A place of the ground, rounded to a 2²⁴th of the tile: there are many.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Point {
     /// In steps; beyond the tile below 0 or above [`LAST_STEP`].
     uv: [f32; 2],
@@ -23,11 +27,11 @@ pub(crate) struct Point {
 }
 
 /// Where a tile lies, for points in it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct PointFrame {
     square: Square,
     /// The middle of the tile, from the earth's centre.
-    pub(crate) middle_m: [f64; 3],
+    middle_m: [f64; 3],
 }
 
 impl PointFrame {
@@ -294,28 +298,11 @@ fn is_inside(uv: [f64; 2]) -> bool {
     uv.iter().all(|step| (0.5..f64::from(LAST_STEP) - 0.5).contains(step))
 }
 
-fn along<const N: usize>(from: [f64; N], to: [f64; N], share: f64) -> [f64; N] {
-    std::array::from_fn(|axis| from[axis] + (to[axis] - from[axis]) * share)
-}
-
 /// Where a line comes into the tile, as a share of the way.
 ///
 /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
 fn share_at_entry([from, to]: [[f64; 2]; 2]) -> Option<f64> {
-    let (mut begin, mut end) = (0.0_f64, 1.0_f64);
-    for axis in 0..2 {
-        let way = to[axis] - from[axis];
-        let shares = [0.0, f64::from(LAST_STEP)].map(|border| (border - from[axis]) / way);
-        if way.abs() < f64::MIN_POSITIVE {
-            if !(0.0..=f64::from(LAST_STEP)).contains(&from[axis]) {
-                return None;
-            }
-        } else {
-            begin = begin.max(shares[0].min(shares[1]));
-            end = end.min(shares[0].max(shares[1]));
-        }
-    }
-    (begin < end).then_some(begin)
+    clip(from, to, [[0.0, f64::from(LAST_STEP)]; 2]).map(|[begin, _]| begin)
 }
 
 /// The direction upwards at a position near the ellipsoid.

@@ -4,7 +4,7 @@ use spade::{DelaunayTriangulation, Triangulation as _};
 
 use super::*;
 use crate::quantized_mesh::{
-    mesh_vertex::MeshVertex,
+    facets::MeshVertex,
     tiling::{Nodes, TerrainTile, Tiling},
 };
 

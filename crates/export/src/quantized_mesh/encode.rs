@@ -10,9 +10,9 @@
 //! ```
 
 use super::{
+    facets::MeshVertex,
     horizon::{occlusion_point, sphere},
     mesh::TileMesh,
-    mesh_vertex::MeshVertex,
     tiling::{Horizon, LAST_STEP},
 };
 

@@ -1,9 +1,37 @@
 //! A mesh's triangles as flat lists: which of them holds a place, through which a line goes, and how high they are.
 
-use spade::{DelaunayTriangulation, Triangulation as _};
+use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation as _};
 
-use super::mesh_vertex::MeshVertex;
-use crate::globe::{between, dot};
+use crate::globe::{between, dot, geocentric_m};
+
+/// A corner of triangles, in whole steps of the tile.
+#[derive(Clone, Copy)]
+pub(crate) struct MeshVertex {
+    pub(crate) u: u16,
+    pub(crate) v: u16,
+    /// Longitude, latitude and height above the ellipsoid.
+    pub(crate) place: [f64; 3],
+    /// The height in 32 767ths of the range, once the mesh is finished.
+    pub(crate) height: u16,
+    /// The position from the earth's centre.
+    pub(crate) at_m: [f64; 3],
+    /// The normal of the ground, in the same axes.
+    pub(crate) normal: [f64; 3],
+}
+
+impl HasPosition for MeshVertex {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        Point2::new(f64::from(self.u), f64::from(self.v))
+    }
+}
+
+impl MeshVertex {
+    pub(crate) fn new([u, v]: [u16; 2], place: [f64; 3], normal: [f64; 3]) -> Self {
+        Self { u, v, place, height: 0, at_m: geocentric_m(place), normal }
+    }
+}
 
 /// In place of a triangle: what is beyond the border of the tile.
 pub(crate) const OUTSIDE: u32 = 0;
@@ -12,7 +40,7 @@ pub(crate) const OUTSIDE: u32 = 0;
 const ROUNDING: f64 = 1e-5;
 
 /// The triangles, numbered as in the mesh. Number 0 is [`OUTSIDE`].
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(crate) struct Facets {
     /// u and v of each vertex.
     uv: Vec<[f64; 2]>,

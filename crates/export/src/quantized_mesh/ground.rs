@@ -4,14 +4,16 @@ use std::sync::Arc;
 
 use corniche_geom::{Bounds, LatticeBounds, LatticePoint, Seam, TileId};
 use corniche_tileset::{FilePackage, Manifest, Sections};
-use corniche_tin::{Placement, Surface};
+use corniche_tin::{NO_TWIN, Surface};
+use corniche_work::Recent;
 
-use super::{
-    node_heights::NodeHeights,
-    surfaces::{SurfaceTile, Surfaces},
-    tiling::Nodes,
+use super::tiling::Nodes;
+use crate::{
+    bounds::{expanded, intersection},
+    error::QuantizedMeshError,
+    places::Places,
+    plane, read,
 };
-use crate::{error::QuantizedMeshError, places::Places};
 
 /// How far beside a line edges are looked for that may cross it, as a share of its length: meridians and parallels bend in the package's CRS.
 const ROOM_BESIDE_LINES: f64 = 0.01;
@@ -19,29 +21,19 @@ const ROOM_BESIDE_LINES: f64 = 0.01;
 /// The ground, read tile by tile. It belongs to one thread; what it reads is shared.
 pub(crate) struct Ground<'a> {
     package: &'a FilePackage,
-    surfaces: &'a Surfaces,
-    node_heights: &'a NodeHeights,
+    kept: &'a Kept,
     places: Places<'a>,
     /// Degrees outside of which there is no ground.
     around_deg: Bounds,
 }
 
 impl<'a> Ground<'a> {
-    pub(crate) fn new(
-        package: &'a FilePackage,
-        (surfaces, node_heights): (&'a Surfaces, &'a NodeHeights),
-        places: Places<'a>,
-    ) -> Self {
+    pub(crate) fn new(package: &'a FilePackage, kept: &'a Kept, places: Places<'a>) -> Self {
         let data = package.manifest().wgs84_bounds;
         // Sides of the data may bend a little beyond what was sampled of them.
         let margin = 0.001 + 0.02 * (data.max_x - data.min_x).max(data.max_y - data.min_y);
-        let around_deg = Bounds {
-            min_x: data.min_x - margin,
-            min_y: data.min_y - margin,
-            max_x: data.max_x + margin,
-            max_y: data.max_y + margin,
-        };
-        Self { package, surfaces, node_heights, places, around_deg }
+        let around_deg = expanded(data, margin);
+        Self { package, kept, places, around_deg }
     }
 
     /// Heights at longitudes and latitudes, as they were asked for; NaN where there is no ground. What comes out for a place depends on nothing but the
@@ -79,7 +71,7 @@ impl<'a> Ground<'a> {
         nodes: Nodes,
         [from, to]: [[i64; 2]; 2],
     ) -> Result<Vec<f64>, QuantizedMeshError> {
-        self.node_heights.of_nodes(nodes, from, to, |places_deg| self.heights_m(places_deg))
+        self.kept.node_heights.of_nodes(nodes, from, to, |places_deg| self.heights_m(places_deg))
     }
 
     fn is_near(&self, [lon, lat]: [f64; 2]) -> bool {
@@ -128,8 +120,6 @@ impl<'a> Ground<'a> {
         [from_deg, to_deg]: [[f64; 2]; 2],
         level: u8,
     ) -> Result<Vec<f64>, QuantizedMeshError> {
-        let manifest = self.package.manifest();
-        let frame = &manifest.frame;
         // The axis along which the line goes, and the one along which it stays.
         let long = [0, 1].map(|axis| (to_deg[axis] - from_deg[axis]).abs());
         let along = usize::from(long[1] > long[0]);
@@ -152,11 +142,7 @@ impl<'a> Ground<'a> {
                         continue;
                     }
                     let [from, to] = ends.map(|vertex| points[vertex].in_steps());
-                    let place = |share: f64| {
-                        let steps = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share);
-                        manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m(steps))
-                    };
-                    // Edges bend a little in degrees.
+                    let place = |share: f64| self.places.wgs84(plane::along(from, to, share));
                     let guess = first / (first - last);
                     let off = place(guess)[across] - line;
                     let better = guess - off / (last - first);
@@ -179,16 +165,10 @@ impl<'a> Ground<'a> {
         let frame = &manifest.frame;
         let mut around = perimeter(area_deg);
         self.places.working_from_wgs84(&mut around)?;
-        let mut bounds_m = Bounds::EMPTY;
-        for position in around.into_iter().filter(|place| place.iter().all(|x| x.is_finite())) {
-            bounds_m.include(position);
-        }
-        // Sides bend a little between the places of the perimeter.
-        let margin_m = 0.02 * bounds_m.width().max(bounds_m.height());
-        let corners = [
-            [bounds_m.min_x - margin_m, bounds_m.max_y + margin_m],
-            [bounds_m.max_x + margin_m, bounds_m.min_y - margin_m],
-        ];
+        let known = around.iter().filter(|place| place.iter().all(|x| x.is_finite()));
+        let bounds_m = Bounds::around(known);
+        let bounds_m = expanded(bounds_m, 0.02 * bounds_m.width().max(bounds_m.height()));
+        let corners = [[bounds_m.min_x, bounds_m.max_y], [bounds_m.max_x, bounds_m.min_y]];
         let [Some(first), Some(last)] = corners.map(|corner| frame.snap(corner)) else {
             return Ok(());
         };
@@ -214,12 +194,9 @@ impl<'a> Ground<'a> {
     /// The parts of a rectangle of degrees that may have ground, with the longitudes of the data: more than one where the data cross 180° and the
     /// rectangle goes around the globe.
     fn near_parts(&self, [[west, south], [east, north]]: [[f64; 2]; 2]) -> Vec<Bounds> {
-        let data = self.around_deg;
-        let part = |turns: f64| Bounds {
-            min_x: (west + 360.0 * turns).max(data.min_x),
-            min_y: south.max(data.min_y),
-            max_x: (east + 360.0 * turns).min(data.max_x),
-            max_y: north.min(data.max_y),
+        let part = |turns: f64| {
+            let [min_x, max_x] = [west, east].map(|lon| lon + 360.0 * turns);
+            intersection(Bounds { min_x, min_y: south, max_x, max_y: north }, self.around_deg)
         };
         let parts = [-1.0, 0.0, 1.0].map(part);
         parts
@@ -280,15 +257,15 @@ impl<'a> Ground<'a> {
 
     fn tile(&self, id: TileId) -> Result<Arc<Option<SurfaceTile>>, QuantizedMeshError> {
         let bytes = |tile: &Option<SurfaceTile>| tile.as_ref().map_or(0, SurfaceTile::bytes);
-        self.surfaces.get(id, || self.read(id), bytes)
+        self.kept.surfaces.get(id, || self.read(id), bytes)
     }
 
     fn read(&self, id: TileId) -> Result<Option<SurfaceTile>, QuantizedMeshError> {
-        let Manifest { frame, vertical, coordinates, .. } = self.package.manifest();
+        let manifest = self.package.manifest();
+        let Manifest { frame, coordinates, .. } = manifest;
         let payload = self.package.payload(id, Sections::TERRAIN)?;
         let Some(terrain) = payload.and_then(|payload| payload.terrain) else { return Ok(None) };
-        let placement = Placement::of_tile(frame, id, vertical.quantum_m);
-        let surface = Surface::new(&terrain.tin, placement);
+        let surface = read::surface_of(manifest, id, &terrain);
         let points = surface.points().iter().map(|point| point.in_steps());
         let positions: Vec<[f64; 2]> =
             points.map(|steps| frame.position_of_fraction_m(steps)).collect();
@@ -311,7 +288,6 @@ impl<'a> Ground<'a> {
 }
 
 /// Where the ground bends.
-#[derive(Debug)]
 pub(crate) struct Bends<T> {
     /// Vertices.
     pub(crate) points: Vec<T>,
@@ -330,3 +306,111 @@ fn perimeter(bounds: Bounds) -> Vec<[f64; 2]> {
     });
     sides.flatten().collect()
 }
+
+/// What is kept of the package's tiles, about: a square degree of SRTM at its default bound, which the coarse levels look at again and again. Where less
+/// than that is kept, tiles are decoded so often that it takes more time, and, for what is made meanwhile, not less memory.
+const KEPT_BYTES: u64 = 112 << 20;
+/// What a triangle takes with its half of a vertex, about: corners and twins 24 bytes, lists by vertex and by square some 30, of the vertex some 24.
+const TRIANGLE_BYTES: u64 = 96;
+
+/// What was read last, for all threads.
+pub(crate) struct Kept {
+    /// `None` for tiles without ground.
+    surfaces: Recent<TileId, Option<SurfaceTile>>,
+    node_heights: NodeHeights,
+}
+
+impl Kept {
+    /// Nothing yet.
+    pub(crate) fn new() -> Self {
+        Self { surfaces: Recent::new(KEPT_BYTES), node_heights: NodeHeights::new() }
+    }
+}
+
+/// The ground of a tile of the package.
+struct SurfaceTile {
+    surface: Surface,
+    /// Longitude, latitude and height, as it was asked for, of each vertex; the height is NaN where the finest level has no ground.
+    places: Vec<[f64; 3]>,
+}
+
+impl SurfaceTile {
+    /// What it takes in memory, about.
+    fn bytes(&self) -> u64 {
+        self.surface.triangles().len() as u64 * TRIANGLE_BYTES
+    }
+
+    /// The edges of all triangles that come near a box, each once.
+    fn edges_near(&self, bounds: LatticeBounds) -> Vec<[u32; 2]> {
+        let mut is_near = vec![false; self.surface.triangles().len()];
+        let mut near = Vec::new();
+        self.surface.visit_triangles_near(bounds, |triangle| {
+            if !std::mem::replace(&mut is_near[triangle as usize], true) {
+                near.push(triangle);
+            }
+        });
+        let sides = near.into_iter().flat_map(|triangle| (0..3).map(move |k| 3 * triangle + k));
+        let is_first = |half_edge: &u32| {
+            let twin = self.surface.twin(*half_edge);
+            twin == NO_TWIN || *half_edge < twin || !is_near[twin as usize / 3]
+        };
+        sides.filter(is_first).map(|half_edge| self.surface.ends(half_edge)).collect()
+    }
+}
+
+/// Nodes along each side of a block, which is sampled at once.
+const BLOCK: i64 = 16;
+/// What is kept of the blocks, about: the many tiles along the end of the ground look at the same few of them.
+const KEPT_NODE_BYTES: u64 = 4 << 20;
+
+/// A block of nodes: their level, how many there are along a tile, and the block's column and row.
+type Key = (u8, i64, [i64; 2]);
+
+/// The heights that were looked at last. Without them each tile would look for tiles of the package all over it, for a few places in each.
+struct NodeHeights(Recent<Key, Vec<f64>>);
+
+impl NodeHeights {
+    pub(crate) fn new() -> Self {
+        Self(Recent::new(KEPT_NODE_BYTES))
+    }
+
+    /// Heights at the nodes of a rectangle, given by its south-western and north-eastern node, row by row from the south. `sample` tells those at longitudes
+    /// and latitudes, the same for a place each time.
+    ///
+    /// # Errors
+    /// Those of `sample`.
+    fn of_nodes(
+        &self,
+        nodes: Nodes,
+        [west, south]: [i64; 2],
+        [east, north]: [i64; 2],
+        sample: impl Fn(&[[f64; 2]]) -> Result<Vec<f64>, QuantizedMeshError>,
+    ) -> Result<Vec<f64>, QuantizedMeshError> {
+        let columns = (east - west + 1) as usize;
+        let mut heights_m = vec![f64::NAN; columns * (north - south + 1) as usize];
+        let blocks = |first: i64, last: i64| first.div_euclid(BLOCK)..=last.div_euclid(BLOCK);
+        for block_row in blocks(south, north) {
+            for block_column in blocks(west, east) {
+                let corner = [block_column * BLOCK, block_row * BLOCK];
+                let key = (nodes.level, nodes.per_tile, [block_column, block_row]);
+                let end = corner.map(|index| index + BLOCK - 1);
+                let make = || sample(&nodes.places_deg(corner, end));
+                let block = self.0.get(key, make, |block| size_of_val(&block[..]) as u64)?;
+                let [i0, j0] = corner;
+                for j in south.max(j0)..=north.min(j0 + BLOCK - 1) {
+                    let [first, last] = [west.max(i0), east.min(i0 + BLOCK - 1)];
+                    let (from, count) =
+                        ((j - j0) * BLOCK + first - i0, (last - first + 1) as usize);
+                    let into = (j - south) as usize * columns + (first - west) as usize;
+                    heights_m[into..into + count]
+                        .copy_from_slice(&block[from as usize..from as usize + count]);
+                }
+            }
+        }
+        Ok(heights_m)
+    }
+}
+
+#[cfg(test)]
+#[path = "ground_tests.rs"]
+mod tests;

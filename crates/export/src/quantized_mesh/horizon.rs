@@ -3,20 +3,14 @@
 use corniche_geom::wgs84::{ECCENTRICITY_2, SEMI_MAJOR_M};
 
 use super::mesh::TileMesh;
-use crate::globe::{between, cross, dot, unit};
+use crate::globe::{between, cross, dot, middle_of, unit};
 
 /// Stands for a point that is infinitely far away, in the earth's radii.
 const FAR_AWAY: f64 = 1e9;
 
 /// Middle and radius of a sphere that holds all vertices, and so all triangles, from the earth's centre.
 pub(crate) fn sphere(mesh: &TileMesh) -> ([f64; 3], f64) {
-    let middle = [0, 1, 2].map(|axis| {
-        let along = mesh.vertices.iter().map(|vertex| vertex.at_m[axis]);
-        let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
-            [low.min(at), high.max(at)]
-        });
-        f64::midpoint(low, high)
-    });
+    let middle = middle_of(&mesh.vertices.iter().map(|vertex| vertex.at_m));
     let distance_m = |at: [f64; 3]| {
         let from = between(middle, at);
         dot(from, from).sqrt()

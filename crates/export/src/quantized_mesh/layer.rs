@@ -14,7 +14,7 @@ use super::{
 pub(crate) const LAYER: &str = "layer.json";
 
 /// Each so many levels there are tiles that tell which tiles lie beneath them. Ten is what other writers use.
-pub(crate) const METADATA_LEVELS: u8 = 10;
+const METADATA_LEVELS: u8 = 10;
 
 /// What layer.json says. With [`Availability::Layer`] it names all tiles.
 ///

@@ -7,12 +7,11 @@ use spade::{
 };
 
 use super::{
-    facets::Facets,
-    mesh_vertex::MeshVertex,
+    facets::{Facets, MeshVertex},
     raster::{Sample, TileRaster},
     tiling::LAST_STEP,
 };
-use crate::globe::{between, dot, geocentric_m};
+use crate::globe::{between, dot, geocentric_m, range_of};
 
 /// The part of a level's error that the TIN may have at nodes. The rest is for the globe, which its plane only approaches.
 const SHARE_OF_TIN: f64 = 0.7;
@@ -23,7 +22,7 @@ pub(crate) const SHARE_OF_VERTICES: f64 = 0.8;
 pub(crate) const SHARE_OF_SAMPLES: f64 = 0.1;
 
 /// A tile, as it is written.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(crate) struct TileMesh {
     pub(crate) vertices: Vec<MeshVertex>,
     /// Counter-clockwise from above.
@@ -33,7 +32,7 @@ pub(crate) struct TileMesh {
 }
 
 /// How far triangles, flat as they are drawn on the globe, are from the ground.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Deviation {
     /// Places with ground that were looked at.
     pub(crate) places: u64,
@@ -165,11 +164,7 @@ impl Mesh {
     /// Rounds heights, as they are written.
     pub(crate) fn finish(&mut self) {
         let heights_m = self.triangles.vertices().map(|vertex| vertex.data().place[2]);
-        let range_m = heights_m
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height_m| {
-                [low.min(height_m), high.max(height_m)]
-            });
-        self.range_m = range_m.map(|height_m| height_m as f32);
+        self.range_m = range_of(heights_m).map(|height_m| height_m as f32);
         let vertices: Vec<FixedVertexHandle> = self.triangles.fixed_vertices().collect();
         for handle in vertices {
             let vertex = self.triangles.vertex_data_mut(handle);

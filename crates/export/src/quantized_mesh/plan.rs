@@ -10,7 +10,11 @@ use super::{
     tiling::{FINEST, TerrainTile, Tiling},
     write_tiles::{has_cells_of, is_wide, mean_bytes, side_and_cell_m, with_ancestors},
 };
-use crate::{bounds::DegreeBounds, error::QuantizedMeshError, read};
+use crate::{
+    bounds::{DegreeBounds, expanded},
+    error::QuantizedMeshError,
+    read,
+};
 
 /// The most tiles of the finest level. Some hundred bytes are kept for each.
 const MOST_TILES: u64 = 4_000_000;
@@ -129,18 +133,8 @@ fn tiles_around_deg(
                 package: package.path().to_path_buf(),
             });
         }
-        let mut around = Bounds::EMPTY;
-        for place in places {
-            around.include(place);
-        }
-        // Sides bend a little between these places.
-        let margin = 0.01 * around.width().max(around.height());
-        found.push(Bounds {
-            min_x: around.min_x - margin,
-            min_y: around.min_y - margin,
-            max_x: around.max_x + margin,
-            max_y: around.max_y + margin,
-        });
+        let around = Bounds::around(&places);
+        found.push(expanded(around, 0.01 * around.width().max(around.height())));
     }
     Ok(found)
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::tiling::{TerrainTile, Tiling};
-use crate::{bounds::DegreeBounds, feature_request::Coordinates};
+use crate::{bounds::DegreeBounds, places::Coordinates};
 
 /// What of a package becomes terrain tiles, and how.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,8 @@
 //! Heights at the nodes of a tile, with one more node on each side, also where there is no ground.
 
 use super::{
+    facets::MeshVertex,
     ground::Ground,
-    mesh_vertex::MeshVertex,
     tiling::{LAST_STEP, Nodes, TerrainTile},
 };
 use crate::{
@@ -14,17 +14,17 @@ use crate::{
 const FAR_FROM_GROUND_M: f64 = 0.0;
 
 /// The heights of a tile. Row 0 and column 0 are those of the neighbours in the north and the west.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(crate) struct TileRaster {
     pub(crate) nodes: Nodes,
     tile: TerrainTile,
     /// Longitudes of columns, from the west.
-    pub(crate) lon_deg: Vec<f64>,
+    lon_deg: Vec<f64>,
     /// Latitudes of rows, from the north.
     pub(crate) lat_deg: Vec<f64>,
     pub(crate) heights_m: Vec<f64>,
     /// Whether there is ground, rather than a height made up.
-    pub(crate) is_ground: Vec<bool>,
+    is_ground: Vec<bool>,
 }
 
 /// A rectangle of the nodes of a level, with one more node on each side.
@@ -312,14 +312,8 @@ impl TileRaster {
         level: Looked,
         ground: &Ground<'_>,
     ) -> Result<Vec<u16>, QuantizedMeshError> {
-        let [[west, south], [east, north]] = self.nodes.corners_deg(self.tile);
-        let ends = match side {
-            Side::West => [[west, south], [west, north]],
-            Side::South => [[west, south], [east, south]],
-            Side::East => [[east, south], [east, north]],
-            Side::North => [[west, north], [east, north]],
-        };
-        // On both sides: where the ground ends, one of them has none.
+        let corners = self.nodes.corners_deg(self.tile);
+        let ends = corners.map(|end| side.at(corners[side.far][side.across], end[1 - side.across]));
         let to_steps = |share: f64| {
             let step = share * f64::from(LAST_STEP);
             [step.floor() as u16, step.ceil() as u16]
@@ -343,17 +337,11 @@ impl TileRaster {
     fn on_side(&self, side: Side, step: u16) -> ([u16; 2], [usize; 2]) {
         let last = self.side() - 1;
         let cell = self.nodes.cell_of(step) as usize;
-        let (steps, node): (_, fn(usize, usize) -> [usize; 2]) = match side {
-            Side::West => ([0, step], |k, last| [0, last - k]),
-            Side::South => ([step, 0], |k, last| [k, last]),
-            Side::East => ([LAST_STEP, step], |k, last| [last, last - k]),
-            Side::North => ([step, LAST_STEP], |k, _| [k, 0]),
-        };
         let nodes = [cell, cell + 1].map(|k| {
-            let [column, row] = node(k, last);
-            self.at(column, row)
+            let [column, from_south] = side.at(side.far * last, k);
+            self.at(column, last - from_south)
         });
-        (steps, nodes)
+        (side.at(side.far as u16 * LAST_STEP, step), nodes)
     }
 
     /// The north-western node of the cell that holds u and v.
@@ -363,21 +351,32 @@ impl TileRaster {
     }
 }
 
-/// The borders of a tile.
-#[derive(Debug, Clone, Copy)]
-enum Side {
-    West,
-    South,
-    East,
-    North,
+/// A side of a tile.
+#[derive(Clone, Copy)]
+struct Side {
+    /// The axis across it: 0 from west to east, 1 from south to north.
+    across: usize,
+    /// 0 at the beginning of this axis, 1 at its end.
+    far: usize,
 }
 
 impl Side {
-    const ALL: [Self; 4] = [Self::West, Self::South, Self::East, Self::North];
+    /// West, south, east and north.
+    const ALL: [Self; 4] = [
+        Self { across: 0, far: 0 },
+        Self { across: 1, far: 0 },
+        Self { across: 0, far: 1 },
+        Self { across: 1, far: 1 },
+    ];
+
+    /// A place by where it is across the side, and along it.
+    fn at<T>(self, across: T, along: T) -> [T; 2] {
+        if self.across == 0 { [across, along] } else { [along, across] }
+    }
 }
 
 /// The package's level that is looked at.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Looked {
     pub(crate) level: u8,
     pub(crate) is_finest: bool,
@@ -413,7 +412,7 @@ impl Samples {
 }
 
 /// A place with ground.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Sample {
     /// u and v.
     pub(crate) steps: [u16; 2],

@@ -20,7 +20,7 @@ pub enum Tiling {
 }
 
 /// Whether a point stands for a tile at the horizon.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) enum Horizon {
     /// One that is hidden only when the whole tile is.
     Point,
@@ -76,7 +76,7 @@ impl Tiling {
         }
     }
 
-    pub(crate) fn rows(level: u8) -> i64 {
+    fn rows(level: u8) -> i64 {
         1 << level
     }
 
@@ -124,7 +124,7 @@ impl Tiling {
 }
 
 /// The degrees of a tile, in which u and v are fractions of steps.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Square {
     corner_deg: [f64; 2],
     size_deg: [f64; 2],
@@ -158,7 +158,7 @@ pub(crate) fn is_in_tile(uv: [f64; 2]) -> bool {
 /// ```
 ///
 /// Nodes lie where u and v can be, so that no vertex moves when it is written. Longitude and latitude are linear in u and v, in Mercator's tiles, too.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) struct Nodes {
     pub(crate) tiling: Tiling,
     pub(crate) level: u8,
@@ -217,26 +217,15 @@ impl Nodes {
 
     /// Longitude and latitude at u and v of a tile. On a border they are the same for both tiles, to the last bit.
     pub(crate) fn place_deg(self, tile: TerrainTile, [u, v]: [u16; 2]) -> [f64; 2] {
-        let (lon_deg, lat_deg) = (self.lon_of(tile.x, u), self.lat_of(tile.y, v));
-        [lon_deg, lat_deg]
-    }
-
-    fn lon_of(self, column: u32, u: u16) -> f64 {
-        let Self { tiling, level, per_tile, .. } = self;
-        if u == LAST_STEP {
-            return self.lon_deg((i64::from(column) + 1) * per_tile);
-        }
-        let [west, east] = [0, 1].map(|beside| tiling.lon_deg(level, i64::from(column) + beside));
-        west + (east - west) * f64::from(u) / f64::from(LAST_STEP)
-    }
-
-    fn lat_of(self, row: u32, v: u16) -> f64 {
-        let Self { tiling, level, per_tile, .. } = self;
-        if v == LAST_STEP {
-            return self.lat_deg((i64::from(row) + 1) * per_tile);
-        }
-        let [south, north] = [0, 1].map(|beside| tiling.lat_deg(level, i64::from(row) + beside));
-        south + (north - south) * f64::from(v) / f64::from(LAST_STEP)
+        let [from, to] = self.corners_deg(tile);
+        // What two tiles have in common is at the same place in both.
+        let of = |axis: usize, step: u16, index: u32, node_deg: fn(Self, i64) -> f64| {
+            if step == LAST_STEP {
+                return node_deg(self, (i64::from(index) + 1) * self.per_tile);
+            }
+            from[axis] + (to[axis] - from[axis]) * f64::from(step) / f64::from(LAST_STEP)
+        };
+        [of(0, u, tile.x, Self::lon_deg), of(1, v, tile.y, Self::lat_deg)]
     }
 
     /// The square of degrees of a tile.

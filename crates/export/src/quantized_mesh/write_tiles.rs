@@ -19,21 +19,18 @@ use super::{
     available::{Block, blocks},
     comparison::{Comparison, Point, PointFrame},
     encode::encode,
-    ground::Ground,
+    ground::{Ground, Kept},
     layer::{LAYER, layer, metadata},
     mesh::{Deviation, Mesh, SHARE_OF_SAMPLES, SHARE_OF_VERTICES, tin_of},
-    node_heights::NodeHeights,
     quantized_mesh_request::{
         QuantizedMeshLevel, QuantizedMeshPlan, QuantizedMeshRequest, QuantizedMeshSummary,
     },
     raster::{Looked, TileRaster},
-    surfaces::{KEPT_BYTES, Surfaces},
     tiling::{Nodes, TerrainTile, Tiling},
 };
 use crate::{
     error::{CoordinatesError, QuantizedMeshError, SelectionError},
-    feature_request::Coordinates,
-    places::Places,
+    places::{Coordinates, Places},
 };
 
 /// Cells along a tile's sides: the fewest, and the most. What lies between nodes is seen at vertices and edges of the package's own triangles.
@@ -58,16 +55,14 @@ pub fn export_quantized_mesh(
     let manifest = package.manifest();
     let (finest, candidates) = (plan.finest(), plan.candidates);
     let heights = heights_in_words(manifest, request.coordinates)?;
-    let (surfaces, node_heights) = (Surfaces::new(KEPT_BYTES), NodeHeights::new());
-    let stores = (&surfaces, &node_heights);
-    let job = Job { package, stores, request, finest };
+    let job = Job { package, kept: &Kept::new(), request, finest };
     let writer = Writer { job: &job, folder, observer };
     let total = with_ancestors(request.tiling, &candidates).len() as u64;
     observer.begin(Stage::ExportTiles, Some(total));
     // Which tiles have ground is told by those of the finest level.
     let (made, finest_tiles) = {
         let candidates = in_curve_order(&candidates);
-        let made = writer.make(&candidates, Emptiness::IsLeftOut, &[])?;
+        let made = writer.make(&candidates, None)?;
         let tiles: BTreeSet<TerrainTile> = made.iter().map(|(tile, _)| *tile).collect();
         (made, tiles)
     };
@@ -80,7 +75,7 @@ pub fn export_quantized_mesh(
     let above = in_curve_order(&above);
     let done = candidates.len() as u64;
     observer.reached(Stage::ExportTiles, done, done + above.len() as u64);
-    let coarser = writer.make(&above, Emptiness::IsWritten, &available)?;
+    let coarser = writer.make(&above, Some(&available))?;
     observer.end(Stage::ExportTiles);
     let mut levels: Vec<QuantizedMeshLevel> =
         (0..=finest).map(|level| job.empty_level(level)).collect();
@@ -111,8 +106,8 @@ fn heights_in_words(
     let places = Places::new(manifest, coordinates)?;
     let datum = &manifest.vertical.datum;
     Ok(match coordinates {
-        Coordinates::Wgs84 => format!("{} (in the package: {datum})", places.heights()),
-        _ => places.heights().to_owned(),
+        Coordinates::Wgs84 => format!("{} (in the package: {datum})", places.heights),
+        _ => places.heights.clone(),
     })
 }
 
@@ -145,30 +140,19 @@ fn in_curve_order(tiles: &BTreeSet<TerrainTile>) -> Vec<TerrainTile> {
     ordered
 }
 
-/// What becomes of tiles without ground.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Emptiness {
-    IsLeftOut,
-    IsWritten,
-}
-
-/// A tile that was written.
-struct Made {
+/// A tile: its bytes, or how many of them were written.
+struct Made<B> {
     triangles: u64,
-    bytes: u64,
+    bytes: B,
     deviation: Deviation,
 }
 
-/// A tile as it is written.
-struct Encoded {
-    triangles: u64,
-    deviation: Deviation,
-    bytes: Vec<u8>,
-}
+/// What is available beneath tiles that are written even without ground; `None` for tiles that are then left out.
+type Available<'a> = Option<&'a [Vec<Block>]>;
 
 struct Job<'a> {
     package: &'a FilePackage,
-    stores: (&'a Surfaces, &'a NodeHeights),
+    kept: &'a Kept,
     request: &'a QuantizedMeshRequest,
     /// The finest level.
     finest: u8,
@@ -184,9 +168,8 @@ impl Writer<'_> {
     fn make(
         &self,
         tiles: &[TerrainTile],
-        emptiness: Emptiness,
-        available: &[Vec<Block>],
-    ) -> Result<Vec<(TerrainTile, Made)>, QuantizedMeshError> {
+        available: Available<'_>,
+    ) -> Result<Vec<(TerrainTile, Made<u64>)>, QuantizedMeshError> {
         let (job, manifest) = (self.job, self.job.package.manifest());
         let wide = tiles.partition_point(|tile| !is_wide(manifest, job.request.tiling, tile.z));
         let mut made = Vec::with_capacity(tiles.len());
@@ -196,7 +179,7 @@ impl Writer<'_> {
                 threads,
                 part,
                 || job.ground(),
-                |ground, tile| self.tile(*tile, ground, emptiness, available),
+                |ground, tile| self.tile(*tile, ground, available),
             )?);
         }
         Ok(tiles.iter().zip(made).filter_map(|(tile, made)| Some((*tile, made?))).collect())
@@ -206,11 +189,10 @@ impl Writer<'_> {
         &self,
         tile: TerrainTile,
         ground: &Ground<'_>,
-        emptiness: Emptiness,
-        available: &[Vec<Block>],
-    ) -> Result<Option<Made>, QuantizedMeshError> {
-        let encoded = self.job.tile(tile, ground, emptiness, available)?;
-        let Some(Encoded { triangles, deviation, bytes }) = encoded else { return Ok(None) };
+        available: Available<'_>,
+    ) -> Result<Option<Made<u64>>, QuantizedMeshError> {
+        let made = self.job.tile(tile, ground, available)?;
+        let Some(Made { triangles, bytes, deviation }) = made else { return Ok(None) };
         let bytes = self.write(tile, &bytes).map_err(not_written)?;
         Ok(Some(Made { triangles, bytes, deviation }))
     }
@@ -245,12 +227,11 @@ pub(crate) fn mean_bytes(
     (request, finest): (&QuantizedMeshRequest, u8),
     tiles: &[TerrainTile],
 ) -> Result<Option<f64>, QuantizedMeshError> {
-    let (surfaces, node_heights) = (Surfaces::new(KEPT_BYTES), NodeHeights::new());
-    let job = Job { package, stores: (&surfaces, &node_heights), request, finest };
+    let job = Job { package, kept: &Kept::new(), request, finest };
     let ground = job.ground()?;
     let (mut files, mut bytes) = (0_u32, 0.0);
     for tile in tiles {
-        if let Some(encoded) = job.tile(*tile, &ground, Emptiness::IsLeftOut, &[])? {
+        if let Some(encoded) = job.tile(*tile, &ground, None)? {
             files += 1;
             bytes += packed(request, &encoded.bytes).map_err(not_written)?.len() as f64;
         }
@@ -261,7 +242,7 @@ pub(crate) fn mean_bytes(
 impl<'a> Job<'a> {
     fn ground(&self) -> Result<Ground<'a>, QuantizedMeshError> {
         let places = Places::new(self.package.manifest(), self.request.coordinates)?;
-        Ok(Ground::new(self.package, self.stores, places))
+        Ok(Ground::new(self.package, self.kept, places))
     }
 
     /// The error to which a level is meshed: that which a viewer assumes. The finest level has all that the package has where its raster is as fine as
@@ -279,9 +260,8 @@ impl<'a> Job<'a> {
         &self,
         tile: TerrainTile,
         ground: &Ground<'_>,
-        emptiness: Emptiness,
-        available: &[Vec<Block>],
-    ) -> Result<Option<Encoded>, QuantizedMeshError> {
+        available: Available<'_>,
+    ) -> Result<Option<Made<Vec<u8>>>, QuantizedMeshError> {
         let tiling = self.request.tiling;
         let error_m = self.error_m(tile.z);
         let nodes = nodes(self.package.manifest(), tiling, tile.z);
@@ -292,7 +272,7 @@ impl<'a> Job<'a> {
         let mut bends =
             ground.bends(nodes.corners_deg(tile), level.level, |place| frame.point(place))?;
         let is_empty = samples.is_empty() && !bends.points.iter().any(Point::is_in_tile);
-        if emptiness == Emptiness::IsLeftOut && is_empty {
+        if available.is_none() && is_empty {
             return Ok(None);
         }
         let failed = |source| QuantizedMeshError::Triangulate { tile: tile.to_string(), source };
@@ -313,9 +293,9 @@ impl<'a> Job<'a> {
         let on_borders = samples.borders.iter().flatten();
         let deviation = comparison.deviation(on_borders, limit_m, level.is_finest, at_steps)?;
         let mesh = mesh.to_tile();
-        let metadata = metadata(self.request, available, tile);
+        let metadata = metadata(self.request, available.unwrap_or_default(), tile);
         let bytes = encode(&mesh, metadata.as_deref(), tiling.horizon_of(tile));
-        Ok(Some(Encoded { triangles: mesh.triangles.len() as u64, deviation, bytes }))
+        Ok(Some(Made { triangles: mesh.triangles.len() as u64, bytes, deviation }))
     }
 
     /// The coarsest level of the package whose ground is near enough to the finest to tell where tiles with this error need vertices.

@@ -1,14 +1,14 @@
 //! The way from place to place, or along a whole road.
 
+use std::{collections::BTreeSet, fmt::Write as _};
+
 use corniche_geom::LatticePoint;
 use corniche_roads::FunctionalRoadClass;
 
-use super::{
-    graph::{NONE, PlaceOnLink, RoadGraph, ShortestWays},
-    road_list::MatchedRoad,
-};
+use super::graph::{NONE, PlaceOnLink, RoadGraph, ShortestWays};
 use crate::{
     error::RouteError,
+    plane::along,
     profile::{Course, CourseLeg},
     road_query::{NamedWays, RoadQuery},
 };
@@ -342,14 +342,14 @@ impl Finder<'_> {
     /// The points of a stretch, in its direction.
     fn points(&self, Stretch { edge, from_m, to_m }: Stretch) -> Vec<LatticePoint> {
         let mut points = self.graph.points(&self.graph.edges[edge]);
-        let along_m = self.graph.along(&points);
+        let along_m = self.graph.places.distances_m(points.iter().copied());
         let at = |at_m: f64| {
             let after = along_m.partition_point(|own_m| *own_m < at_m).min(points.len() - 1);
             let before = after.saturating_sub(1);
             let run_m = along_m[after] - along_m[before];
             let share = if run_m > 0.0 { (at_m - along_m[before]) / run_m } else { 1.0 };
             let [from, to] = [before, after].map(|index| points[index].in_steps());
-            let [u, v] = [0, 1].map(|axis| (from[axis] + share * (to[axis] - from[axis])).round());
+            let [u, v] = along(from, to, share).map(f64::round);
             LatticePoint::new(u as i64, v as i64)
         };
         let [low_m, high_m] = [from_m.min(to_m), from_m.max(to_m)];
@@ -378,4 +378,44 @@ fn root(sets: &mut [usize], mut node: usize) -> usize {
 fn unite(sets: &mut [usize], one: usize, other: usize) {
     let (one, other) = (root(sets, one), root(sets, other));
     sets[one.max(other)] = one.min(other);
+}
+
+/// So many ids of a road are written.
+const MOST_IDS: usize = 20;
+
+/// What belongs together of the ways that are meant.
+#[derive(Clone)]
+struct MatchedRoad {
+    /// Its edges, ascending.
+    edges: Vec<usize>,
+    /// True length in plan of all its ways, metres.
+    length_m: f64,
+}
+
+impl MatchedRoad {
+    /// Its nodes, ascending.
+    fn nodes(&self, graph: &RoadGraph<'_>) -> Vec<usize> {
+        let ends = self.edges.iter().flat_map(|&edge| graph.edges[edge].ends);
+        ends.collect::<BTreeSet<usize>>().into_iter().collect()
+    }
+
+    /// A line of a list: its length, its place and its ways.
+    fn text(&self, graph: &RoadGraph<'_>) -> String {
+        let way_id = |&edge: &usize| graph.network.way_of(graph.edges[edge].link).way_id;
+        let way_ids: BTreeSet<i64> = self.edges.iter().map(way_id).collect();
+        let [lon, lat] = self.edges.first().map_or([f64::NAN; 2], |&edge| {
+            graph.places.wgs84(graph.points(&graph.edges[edge])[0].in_steps())
+        });
+        let first: Vec<String> = way_ids.iter().take(MOST_IDS).map(i64::to_string).collect();
+        let mut text = format!(
+            "{:.2} km near {lon:.5},{lat:.5}: --way {}",
+            self.length_m / 1e3,
+            first.join(","),
+        );
+        if way_ids.len() > MOST_IDS {
+            // Writing to a String cannot fail.
+            let _ = write!(text, " and {} more", way_ids.len() - MOST_IDS);
+        }
+        text
+    }
 }

@@ -8,7 +8,10 @@ use std::{
 use corniche_geom::{IndexLists, LatticePoint};
 use corniche_network::{Breaks, Chains, Link, Network, NetworkWay};
 
-use crate::places::Places;
+use crate::{
+    places::Places,
+    plane::{along, nearest, vector},
+};
 
 /// A metre of another road counts as so many of the road that is meant: others only close its gaps.
 const OTHER_ROADS: f64 = 20.0;
@@ -16,7 +19,7 @@ const OTHER_ROADS: f64 = 20.0;
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// A link in the direction of its way.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Edge {
     pub(crate) link: Link,
     pub(crate) ends: [usize; 2],
@@ -26,13 +29,11 @@ pub(crate) struct Edge {
 }
 
 /// A place along a link of a graph.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct PlaceOnLink {
     pub(crate) edge: usize,
     /// Distance along the link, in the direction of its way, metres.
     pub(crate) along_m: f64,
-    /// The lattice point there.
-    pub(crate) point: LatticePoint,
     /// How far it is from the place that was given, metres.
     pub(crate) off_m: f64,
 }
@@ -106,10 +107,8 @@ impl<'a> RoadGraph<'a> {
                     let ends = if link.is_against { [to, from] } else { [from, to] };
                     let mut link = link;
                     link.is_against = false;
-                    let mut edge = Edge { link, ends, length_m: 0.0, is_wanted };
-                    edge.length_m =
-                        along(places, &points(network, &edge)).last().copied().unwrap_or(0.0);
-                    edges.push(edge);
+                    let length_m = places.length_m(network.points_of_link(link));
+                    edges.push(Edge { link, ends, length_m, is_wanted });
                 }
                 from = to;
             }
@@ -132,12 +131,7 @@ impl<'a> RoadGraph<'a> {
 
     /// The points of an edge, in the direction of its way.
     pub(crate) fn points(&self, edge: &Edge) -> Vec<LatticePoint> {
-        points(self.network, edge)
-    }
-
-    /// The distances of points from the first of them, metres.
-    pub(crate) fn along(&self, points: &[LatticePoint]) -> Vec<f64> {
-        along(self.places, points)
+        self.network.points_of_link(edge.link).collect()
     }
 
     /// The shortest ways to all nodes from some of them, which are so far already. Edges are followed where `is_open` says so.
@@ -179,12 +173,12 @@ impl<'a> RoadGraph<'a> {
 
     /// See [`corniche_tileset::Manifest::covered_text`].
     pub(crate) fn covered_text(&self, place_deg: [f64; 2]) -> String {
-        self.places.manifest().covered_text(place_deg)
+        self.places.manifest.covered_text(place_deg)
     }
 
     /// The places on roads that are meant nearest to a place, and those that are at most so much farther; the nearest first.
     pub(crate) fn near(&self, place_deg: [f64; 2], beside_m: f64) -> Vec<PlaceOnLink> {
-        let manifest = self.places.manifest();
+        let manifest = self.places.manifest;
         let Some(position_m) = manifest.coordinates.working_from_wgs84(place_deg) else {
             return Vec::new();
         };
@@ -201,17 +195,10 @@ impl<'a> RoadGraph<'a> {
             let mut best: Option<(f64, usize, [f64; 2])> = None;
             for (segment, pair) in points.array_windows::<2>().enumerate() {
                 let [from, to] = pair.map(LatticePoint::in_steps);
-                let scaled = |at: [f64; 2], origin: [f64; 2]| {
-                    [0, 1].map(|axis| (at[axis] - origin[axis]) * metres[axis])
-                };
-                let (run, off) = (scaled(to, from), scaled(here, from));
-                let square = run[0].powi(2) + run[1].powi(2);
-                let share = (run[0] * off[0] + run[1] * off[1]) / square;
-                let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
-                let off_m = (off[0] - share * run[0]).hypot(off[1] - share * run[1]);
+                let scaled = |[u, v]: [f64; 2]| [u * metres[0], v * metres[1]];
+                let [share, off_m] = nearest(scaled(vector(from, to)), scaled(vector(from, here)));
                 if best.is_none_or(|(least_m, ..)| off_m < least_m) {
-                    let at = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
-                    best = Some((off_m, segment, at));
+                    best = Some((off_m, segment, along(from, to, share)));
                 }
             }
             let Some((off_m, segment, at)) =
@@ -222,34 +209,12 @@ impl<'a> RoadGraph<'a> {
             least_m = least_m.min(off_m);
             let [u, v] = at.map(|steps| steps.round() as i64);
             let point = LatticePoint::new(u, v);
-            let mut to_here = points[..=segment].to_vec();
-            to_here.push(point);
-            let along_m = self.along(&to_here).last().copied().unwrap_or_default();
-            near.push(PlaceOnLink {
-                edge: number,
-                along_m: along_m.min(edge.length_m),
-                point,
-                off_m,
-            });
+            let to_here = points[..=segment].iter().copied().chain([point]);
+            let along_m = self.places.length_m(to_here);
+            near.push(PlaceOnLink { edge: number, along_m: along_m.min(edge.length_m), off_m });
         }
         near.retain(|place| place.off_m <= least_m + beside_m);
         near.sort_by(|one, other| one.off_m.total_cmp(&other.off_m));
         near
     }
-}
-
-fn points(network: &Network, edge: &Edge) -> Vec<LatticePoint> {
-    network.points_of_link(edge.link).collect()
-}
-
-fn along(places: &Places<'_>, points: &[LatticePoint]) -> Vec<f64> {
-    let mut along_m = 0.0;
-    let mut before: Option<LatticePoint> = None;
-    let step = |point: &LatticePoint| {
-        if let Some(before) = before.replace(*point) {
-            along_m += places.distance_m(before.in_steps(), point.in_steps());
-        }
-        along_m
-    };
-    points.iter().map(step).collect()
 }

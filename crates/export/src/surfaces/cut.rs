@@ -22,7 +22,6 @@ use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation
 
 use super::{
     ground::{GroundMesh, GroundVertex, unit},
-    label_index::LabelIndex,
     plan_cut::within,
     ribbon::Ribbon,
 };
@@ -43,7 +42,7 @@ pub(crate) struct Ground<'a> {
 }
 
 /// A vertex of the triangulation, from the middle of the tile.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 struct Node {
     at: Point2<f64>,
     /// The TIN's vertex.
@@ -68,17 +67,15 @@ pub(crate) fn cut(ground: &Ground<'_>, ribbons: &[Ribbon]) -> Result<GroundMesh,
         tile.min.u + (tile.max.u - tile.min.u) / 2,
         tile.min.v + (tile.max.v - tile.min.v) / 2,
     );
-    let labels = LabelIndex::new(ribbons, tile);
+    let labels = LabelIndex::new(ribbons, tile, middle);
     let outlines = Outlines::within(ribbons, tile);
     let mut is_touched = vec![false; surface.triangles().len()];
     for bounds in outlines.bounds() {
         surface.visit_triangles_near(bounds, |triangle| {
-            let [a, b, c] =
+            let corners =
                 surface.triangles()[triangle as usize].map(|v| surface.points()[v as usize]);
-            let own = LatticeBounds { min: a, max: a }
-                .union(&LatticeBounds { min: b, max: b })
-                .union(&LatticeBounds { min: c, max: c });
-            is_touched[triangle as usize] |= own.intersects(&bounds);
+            let own = LatticeBounds::of(&corners);
+            is_touched[triangle as usize] |= own.is_some_and(|own| own.intersects(&bounds));
         });
     }
     let mut mesh = GroundMesh::new(middle);
@@ -126,12 +123,9 @@ impl Outlines {
 
     /// What they may come near.
     fn bounds(&self) -> impl Iterator<Item = LatticeBounds> {
-        let of_point = |p: LatticePoint| LatticeBounds { min: p, max: p };
-        let of_segments = self
-            .segments
-            .iter()
-            .map(move |[one, other]| of_point(*one).union(&of_point(*other)).expanded(MOVED_STEPS));
-        of_segments.chain(self.points.iter().map(move |point| of_point(*point)))
+        let of_segments = self.segments.iter().filter_map(|ends| LatticeBounds::of(ends));
+        let of_points = self.points.iter().map(|&point| LatticeBounds { min: point, max: point });
+        of_segments.map(|bounds| bounds.expanded(MOVED_STEPS)).chain(of_points)
     }
 }
 
@@ -364,6 +358,86 @@ impl Above<'_> {
         };
         side(|p| p.u, at[0], self.middle.u).or_else(|| side(|p| p.v, at[1], self.middle.v))
     }
+}
+
+/// Squares along each side of a tile.
+const SQUARES: usize = 128;
+
+/// The parts of ribbons by the squares of a grid over the tile.
+struct LabelIndex<'a> {
+    /// Each part with the label of its ribbon.
+    parts: Vec<(u32, &'a [LatticePoint])>,
+    /// Places in `parts`, ascending, by square.
+    squares: Vec<Vec<u32>>,
+    middle: LatticePoint,
+    bounds: LatticeBounds,
+}
+
+impl<'a> LabelIndex<'a> {
+    fn new(ribbons: &'a [Ribbon], tile: &LatticeBounds, middle: LatticePoint) -> Self {
+        let mut index = Self {
+            parts: Vec::new(),
+            squares: vec![Vec::new(); SQUARES * SQUARES],
+            middle,
+            bounds: *tile,
+        };
+        for (label, ribbon) in ribbons.iter().enumerate() {
+            for part in &ribbon.parts {
+                index.add(label as u32 + 1, part);
+            }
+        }
+        index
+    }
+
+    fn add(&mut self, label: u32, part: &'a [LatticePoint]) {
+        let Some(own) = LatticeBounds::of(part) else { return };
+        if !own.intersects(&self.bounds) {
+            return;
+        }
+        let number = self.parts.len() as u32;
+        self.parts.push((label, part));
+        let [from, to] =
+            [own.min, own.max].map(|p| [self.column(p.u as f64), self.row(p.v as f64)]);
+        for row in from[1]..=to[1] {
+            for column in from[0]..=to[0] {
+                self.squares[row * SQUARES + column].push(number);
+            }
+        }
+    }
+
+    fn column(&self, u: f64) -> usize {
+        square(u, self.bounds.min.u, self.bounds.max.u)
+    }
+
+    fn row(&self, v: f64) -> usize {
+        square(v, self.bounds.min.v, self.bounds.max.v)
+    }
+
+    /// The label at a position from the middle of the tile; 0 where there is no road.
+    fn at(&self, at: [f64; 2]) -> u32 {
+        let [u, v] = [at[0] + self.middle.u as f64, at[1] + self.middle.v as f64];
+        let parts = &self.squares[self.row(v) * SQUARES + self.column(u)];
+        let parts = parts.iter().map(|part| self.parts[*part as usize]);
+        // Parts come in the order of ribbons.
+        let mut found = parts.filter(|(_, part)| self.holds(part, at));
+        found.next().map_or(0, |(label, _)| label)
+    }
+
+    /// Whether a position lies in a polygon, by the even-odd rule.
+    fn holds(&self, part: &[LatticePoint], [x, y]: [f64; 2]) -> bool {
+        let at = |p: LatticePoint| [(p.u - self.middle.u) as f64, (p.v - self.middle.v) as f64];
+        let ends = part.iter().zip(part.iter().cycle().skip(1));
+        let crossed = ends.filter(|(from, to)| {
+            let ([fx, fy], [tx, ty]) = (at(**from), at(**to));
+            (fy > y) != (ty > y) && x < fx + (tx - fx) * (y - fy) / (ty - fy)
+        });
+        crossed.count() % 2 == 1
+    }
+}
+
+fn square(at: f64, from: i64, to: i64) -> usize {
+    let share = (at - from as f64) / (to - from) as f64;
+    ((share * SQUARES as f64).max(0.0) as usize).min(SQUARES - 1)
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, slab_thickness_m};
 use corniche_tileset::{Manifest, Terrain};
-use corniche_tin::{Placement, Surface};
 
 use super::{
     cut::{self, Ground},
@@ -12,10 +11,10 @@ use super::{
     ribbon::Ribbon,
     slab::{Slab, SlabLabels},
 };
-use crate::error::SurfaceError;
+use crate::{error::SurfaceError, read::surface_of};
 
 /// What a triangle is a surface of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum SurfaceKind {
     Ground,
     /// A road, on the ground or on a bridge.
@@ -29,7 +28,7 @@ pub(crate) struct Divided {
     /// What the label of a triangle names is told by [`Divided::kind_of`] and [`Divided::road_of`].
     pub(crate) mesh: GroundMesh,
     /// The most important first.
-    pub(crate) roads: Vec<Road>,
+    roads: Vec<Road>,
     /// Triangles that were divided.
     pub(crate) package_triangles: u64,
     /// How long it took, seconds.
@@ -45,8 +44,7 @@ impl Divided {
         lines: Option<&TileLines<'_>>,
     ) -> Result<Option<Self>, SurfaceError> {
         let frame = &manifest.frame;
-        let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
-        let surface = Surface::new(&terrain.tin, placement);
+        let surface = surface_of(manifest, id, terrain);
         if surface.triangles().is_empty() {
             return Ok(None);
         }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use corniche_geom::{LatticeBounds, LatticePoint};
 
 /// A vertex of the ground.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct GroundVertex {
     /// Lattice steps from the middle of the tile.
     pub(crate) at: [f64; 2],
@@ -18,7 +18,7 @@ pub(crate) struct GroundVertex {
 }
 
 /// Triangles with labels.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct GroundMesh {
     /// What positions are counted from.
     pub(crate) middle: LatticePoint,

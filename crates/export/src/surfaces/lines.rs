@@ -25,14 +25,14 @@ const POINT_BYTES: usize = size_of::<LatticePoint>() + size_of::<f64>();
 const MOST_STEPS: u64 = 1 << 28;
 
 /// Which roads become surfaces, and how wide.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct RoadLook<'a> {
     pub(crate) classes: &'a [FunctionalRoadClass],
     pub(crate) style: &'a Style,
 }
 
 /// A road in a tile.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct Road {
     pub(crate) way_id: i64,
     pub(crate) class: FunctionalRoadClass,
@@ -43,7 +43,6 @@ pub(crate) struct Road {
 }
 
 /// What one tile has of a way, on the ground or as a slab.
-#[derive(Debug)]
 struct TileLine {
     way_id: i64,
     class: FunctionalRoadClass,
@@ -72,7 +71,7 @@ pub(crate) struct TileLines<'a> {
 /// How much of roads is seen on a level.
 ///
 /// A client that allows two pixels of error draws a tile only where a pixel is at least half its error. What is finer than that is not seen on it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 struct Detail {
     /// Classes that were asked for, that the style draws at that scale and that are about a pixel wide: thinner surfaces break
     /// up into dots.

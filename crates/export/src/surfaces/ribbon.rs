@@ -17,7 +17,7 @@ use corniche_geom::LatticePoint;
 const SHARPEST_MITRE: f64 = -0.5;
 
 /// A centre-line with what it needs to become a surface.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct CenterLine {
     /// Two at least, no two neighbours the same.
     pub(crate) points: Vec<LatticePoint>,
@@ -30,7 +30,7 @@ pub(crate) struct CenterLine {
 }
 
 /// The surface of a road in plan.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Ribbon {
     /// The lines that bound it, some of which may lie inside of it.
     pub(crate) outline: Vec<[LatticePoint; 2]>,
@@ -39,7 +39,7 @@ pub(crate) struct Ribbon {
 }
 
 /// A line across a road at a point of its centre-line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct CrossSection {
     /// The number of the point.
     pub(crate) point: usize,

@@ -11,6 +11,7 @@ use super::{
     ribbon::{CenterLine, CrossSection},
     wide_line::wide_points,
 };
+use crate::globe::{between, cross};
 
 /// The slab of a bridge.
 pub(crate) struct Slab<'a> {
@@ -23,7 +24,7 @@ pub(crate) struct Slab<'a> {
 }
 
 /// The labels of a slab's triangles.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct SlabLabels {
     /// The road on top.
     pub(crate) road: u32,
@@ -117,8 +118,7 @@ impl Corner {
 
 /// The normal of a triangle, twice its area long.
 fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    let [p, q] = [b, c].map(|end| [0, 1, 2].map(|axis| end[axis] - a[axis]));
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+    cross(between(a, b), between(a, c))
 }
 
 #[cfg(test)]

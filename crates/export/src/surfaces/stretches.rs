@@ -25,7 +25,7 @@ const NEAR_STEPS: f64 = 2.0;
 const START_M: f64 = 0.1;
 
 /// A stretch of a line in plan.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct Stretch {
     /// Two at least, no two neighbours the same.
     pub(crate) points: Vec<LatticePoint>,
@@ -167,11 +167,10 @@ impl<'a> Line<'a> {
     }
 
     /// The place and the ground's height there.
-    fn at(&self, along: f64) -> ([f64; 2], f64) {
+    fn at(&self, along: f64) -> Vertex {
         let (segment, share) = self.segment_at(along);
         let [from, to] = [self.vertices[segment], self.vertices[segment + 1]];
-        let mix = |from: f64, to: f64| from + share * (to - from);
-        ([0, 1].map(|axis| mix(from.at[axis], to.at[axis])), mix(from.z_m, to.z_m))
+        from.towards(to, share)
     }
 
     /// How far along a segment the place nearest to a point is, and how far that is from the point.
@@ -218,7 +217,7 @@ impl<'a> Line<'a> {
     /// The deck of a run, whose points are at these places, over the ground.
     fn deck(&self, run: &SpanRun, places: &[f64], quantum_m: f64) -> Vec<Station> {
         let of_run = run.points.iter().zip(places).map(|(point, &along)| {
-            let (_, ground_m) = self.at(along);
+            let ground_m = self.at(along).z_m;
             let deck_m = match point.height {
                 SpanHeight::Steps(steps) => steps as f64 * quantum_m,
                 SpanHeight::Ground { .. } => ground_m,
@@ -271,7 +270,7 @@ fn high_parts(deck: &[Station], line: &Line<'_>, least_m: f64) -> Vec<Vec<DeckPo
         let cut = before.filter(|from| is_high(from) != is_high(station)).map(|from| {
             let share = (least_m - from.over_m) / (station.over_m - from.over_m);
             let along = from.along + share * (station.along - from.along);
-            let (at, _) = line.at(along);
+            let at = line.at(along).at;
             let deck_m = from.deck_m + share * (station.deck_m - from.deck_m);
             DeckPoint { along, at: rounded(at), deck_m }
         });

@@ -9,6 +9,8 @@
 
 use corniche_geom::LatticePoint;
 
+use crate::plane::{nearest, vector};
+
 /// A point is left out only if that moves the line by no more than this share of half its width.
 const MOST_MOVED: f64 = 0.25;
 
@@ -59,11 +61,9 @@ fn half_turn(from: LatticePoint, at: LatticePoint, to: LatticePoint) -> f64 {
 
 /// How far a point is beside a segment.
 fn beside([from, to]: [LatticePoint; 2], at: LatticePoint) -> f64 {
-    let vector = |end: LatticePoint| [(end.u - from.u) as f64, (end.v - from.v) as f64];
-    let ([du, dv], [pu, pv]) = (vector(to), vector(at));
-    let share = ((pu * du + pv * dv) / (du * du + dv * dv)).clamp(0.0, 1.0);
-    let share = if share.is_finite() { share } else { 0.0 };
-    (pu - share * du).hypot(pv - share * dv)
+    let [from, to, at] = [from, to, at].map(LatticePoint::in_steps);
+    let [_, off] = nearest(vector(from, to), vector(from, at));
+    off
 }
 
 #[cfg(test)]

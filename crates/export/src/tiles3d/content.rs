@@ -4,23 +4,61 @@ use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
-use corniche_styles::Rgb;
+use corniche_styles::{Rgb, Style};
 use corniche_tileset::{FilePackage, Manifest, Sections, TilePayload};
 
 use super::{
-    parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent, y_up},
-    placed::{PlacedTile, PlacedVertex, Placing, TileBox},
-    skirt::Skirt,
-    tiles3d_request::{TileRoads, Tiles3dRequest},
+    parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent},
+    placed::{PlacedTile, PlacedVertex, Placing, Skirt, TileBox},
 };
 use crate::{
+    bounds::DegreeBounds,
     error::Tiles3dError,
-    gltf::linear,
+    gltf::{linear, y_up},
+    places::Coordinates,
     read,
     relief_map::ReliefMap,
     surfaces::{Divided, SurfaceKind, TileLines},
     texture::Texture,
 };
+
+/// What tiles have of roads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TileRoads {
+    /// Surfaces of their true width, cut into the ground's own triangles.
+    Cut,
+    /// Roads are there as their centre-lines, lifted a little above the ground.
+    Line,
+    /// The same as vector content, in a second tileset (`3DTILES_content_gltf_vector`, a draft).
+    Vector,
+    /// Roads are left out.
+    None,
+}
+
+/// What of a package becomes 3D Tiles, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tiles3dRequest {
+    /// The finest level that is taken; `None` is the package's finest.
+    pub finest_level: Option<u8>,
+    /// Tiles that meet it are taken, whole; `None` takes all.
+    pub bounds: Option<DegreeBounds>,
+    /// How roads are there.
+    pub roads: TileRoads,
+    /// The classes of roads that are taken.
+    pub classes: Vec<FunctionalRoadClass>,
+    /// Widths and colours of roads, and colours of the ground.
+    pub style: Style,
+    /// Whether the package's reliefs become normal maps.
+    pub relief: bool,
+    /// Whether walls hang from the borders of tiles, which hide gaps between levels.
+    pub skirts: bool,
+    /// Whether vertices and indices are compressed (`EXT_meshopt_compression`).
+    pub compress: bool,
+    /// Heights: [`Coordinates::Wgs84`] carries them to the ellipsoid, [`Coordinates::Wgs84WithPackageHeights`] takes them as they are.
+    pub coordinates: Coordinates,
+    /// How many tiles are made at the same time.
+    pub threads: usize,
+}
 
 /// Lines are lifted by this share of their tile's error, and by [`LEAST_LIFT_M`] at least: less than a fifth of a pixel where a tile is shown with
 /// two pixels of error.
@@ -53,7 +91,7 @@ pub(crate) struct MadeTile {
 }
 
 /// What is known of a tile.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct TileFacts {
     /// The package's bound against the full-resolution DEM.
     pub(crate) bound_m: f64,
@@ -152,8 +190,6 @@ struct Builder<'a> {
     look: Look,
     parts: Vec<(PrimitiveKind, Primitive)>,
     rows: BTreeMap<i64, RoadRow>,
-    /// Ways of features, until rows have their numbers.
-    ways: Vec<Vec<i64>>,
     line_positions: Vec<[f32; 3]>,
 }
 
@@ -171,7 +207,6 @@ impl<'a> Builder<'a> {
             look,
             parts: Vec::new(),
             rows: BTreeMap::new(),
-            ways: Vec::new(),
             line_positions: Vec::new(),
         }
     }
@@ -207,7 +242,7 @@ impl<'a> Builder<'a> {
         // What a vertex became last, and for which label: each has its own.
         let mut places = vec![None; self.placed.vertices.len()];
         for (kind, labels) in by_kind {
-            let (mut part, mut ways) = (Primitive::default(), Vec::new());
+            let mut part = Primitive::default();
             for (label, of_label) in labels {
                 let road = divided.road_of(label);
                 for corner in of_label.iter().flat_map(|&triangle| self.placed.triangles[triangle])
@@ -222,7 +257,7 @@ impl<'a> Builder<'a> {
                             part.positions.push(y_up(vertex.at_m));
                             part.normals.push(y_up(vertex.normal));
                             match road {
-                                Some(road) => ways.push(road.way_id),
+                                Some(road) => part.ways.push(road.way_id),
                                 None => self.add_look(vertex, &mut part),
                             }
                             index
@@ -231,9 +266,7 @@ impl<'a> Builder<'a> {
                     part.indices.push(index);
                 }
                 if let Some(road) = road {
-                    self.rows
-                        .entry(road.way_id)
-                        .or_insert_with(|| row(road.way_id, road.class, &road.attributes));
+                    self.add_row(road.way_id, road.class, &road.attributes);
                 }
             }
             let kind = match kind {
@@ -242,7 +275,6 @@ impl<'a> Builder<'a> {
                 SurfaceKind::Slab(class) => PrimitiveKind::BridgeSlabs(class),
             };
             self.parts.push((kind, part));
-            self.ways.push(ways);
         }
     }
 
@@ -259,7 +291,6 @@ impl<'a> Builder<'a> {
         }
         part.indices.extend(skirt.triangles.as_flattened());
         self.parts.push((PrimitiveKind::Skirt, part));
-        self.ways.push(Vec::new());
     }
 
     /// Centre-lines, lifted, as parts of a kind.
@@ -272,19 +303,18 @@ impl<'a> Builder<'a> {
     ) -> Result<(), Tiles3dError> {
         let lift_m = (error_m * LIFT_OF_ERROR).max(LEAST_LIFT_M);
         let pieces = read::pieces_of(payload, self.manifest, &self.request.classes)?;
-        let mut by_class: BTreeMap<FunctionalRoadClass, (Primitive, Vec<i64>)> = BTreeMap::new();
+        let mut by_class: BTreeMap<FunctionalRoadClass, Primitive> = BTreeMap::new();
         for piece in pieces {
             if piece.attributes.structure == Structure::Tunnel {
                 continue;
             }
-            let (part, ways) = by_class.entry(piece.class).or_default();
-            let places: Vec<([f64; 2], f64)> =
-                piece.vertices.iter().map(|vertex| (vertex.at, vertex.z_m + lift_m)).collect();
+            let part = by_class.entry(piece.class).or_default();
+            let places = piece.vertices.iter().map(|vertex| (vertex.at, vertex.z_m + lift_m));
             let first = part.positions.len() as u32;
-            for at in placing.positions(&places, self.placed.middle_m)? {
+            for at in placing.positions(places, self.placed.middle_m)? {
                 self.line_positions.push(at);
                 part.positions.push(y_up(at));
-                ways.push(piece.key.way_id);
+                part.ways.push(piece.key.way_id);
             }
             let end = part.positions.len() as u32;
             if let PrimitiveKind::RoadStrips(_) = kind(piece.class) {
@@ -295,23 +325,27 @@ impl<'a> Builder<'a> {
             } else {
                 part.indices.extend((first + 1..end).flat_map(|next| [next - 1, next]));
             }
-            self.rows
-                .entry(piece.key.way_id)
-                .or_insert_with(|| row(piece.key.way_id, piece.class, &piece.attributes));
+            self.add_row(piece.key.way_id, piece.class, &piece.attributes);
         }
-        for (class, (part, ways)) in by_class {
-            self.parts.push((kind(class), part));
-            self.ways.push(ways);
-        }
+        self.parts.extend(by_class.into_iter().map(|(class, part)| (kind(class), part)));
         Ok(())
     }
 
+    /// Adds a way to the table of roads, if it is not there.
+    fn add_row(&mut self, way_id: i64, class: FunctionalRoadClass, attributes: &RoadAttributes) {
+        self.rows.entry(way_id).or_insert_with(|| {
+            let structure = match attributes.structure {
+                Structure::Ground => "",
+                other => other.name(),
+            };
+            let RoadAttributes { name, reference, highway, .. } = attributes;
+            let texts = [name, reference, highway, structure].map(str::to_owned);
+            RoadRow { way_id, class: class.number(), texts }
+        });
+    }
+
     fn finish(self, id: TileId) -> TileContent {
-        let Self { mut parts, rows, ways, request, placed, manifest, look, .. } = self;
-        let number: BTreeMap<i64, u32> = rows.keys().copied().zip(0..).collect();
-        for ((_, part), ways) in parts.iter_mut().zip(ways) {
-            part.features = ways.iter().map(|way| number[way]).collect();
-        }
+        let Self { parts, rows, request, placed, manifest, look, .. } = self;
         TileContent {
             name: id.to_string(),
             translation: y_up(placed.middle_m),
@@ -336,19 +370,4 @@ fn color(manifest: &Manifest, request: &Tiles3dRequest, height_m: f64) -> Rgb {
 fn mean_color(manifest: &Manifest, request: &Tiles3dRequest, placed: &PlacedTile) -> Rgb {
     let sum: f64 = placed.vertices.iter().map(|vertex| vertex.height_m).sum();
     color(manifest, request, sum / placed.vertices.len().max(1) as f64)
-}
-
-fn row(way_id: i64, class: FunctionalRoadClass, attributes: &RoadAttributes) -> RoadRow {
-    let structure = match attributes.structure {
-        Structure::Ground => "",
-        other => other.name(),
-    };
-    RoadRow {
-        way_id,
-        class: class.number(),
-        name: attributes.name.clone(),
-        reference: attributes.reference.clone(),
-        highway: attributes.highway.clone(),
-        structure: structure.to_owned(),
-    }
 }

@@ -3,19 +3,19 @@
 //! Sources: Khronos Group, *glTF 2.0 Specification*; `EXT_mesh_features`, `EXT_structural_metadata`, `EXT_meshopt_compression`,
 //! `KHR_materials_unlit`; for strips of lines the draft `KHR_mesh_primitive_restart`.
 
-use std::io::{self, Write};
+use std::{
+    collections::BTreeSet,
+    io::{self, Write},
+};
 
 use corniche_styles::Rgb;
 use serde_json::{Map, Value, json};
 
 use super::parts::{Primitive, PrimitiveKind, RESTART, RoadRow, TileContent};
 use crate::gltf::{
-    ARRAY_BUFFER, CHUNK_ALIGNMENT, ELEMENT_ARRAY_BUFFER, LINE_STRIP, LINES, SLAB_COLOR, TRIANGLES,
-    U8, U16, U32, floats, linear, positions, sampler, write_container,
+    ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Gltf, LINE_STRIP, LINES, SLAB_COLOR, TRIANGLES, U8, U16,
+    U32, floats, material, positions, write_container,
 };
-
-/// A text of a row.
-type TextOf = fn(&RoadRow) -> &str;
 
 /// Views of tables begin at multiples of this.
 const TABLE_ALIGNMENT: usize = 8;
@@ -31,12 +31,12 @@ pub(crate) fn write(
     is_compressed: bool,
     into: &mut dyn Write,
 ) -> io::Result<()> {
-    let mut file = File { is_compressed, ..File::default() };
+    let mut file = File { gltf: Gltf::default(), decoded: 0, is_compressed };
     let (mut primitives, mut materials) = (Vec::new(), Vec::new());
     for (kind, part) in &tile.parts {
-        let mut primitive = file.primitive(*kind, part)?;
+        let mut primitive = file.primitive(*kind, part, &tile.roads)?;
         primitive["material"] = json!(materials.len());
-        let mut material = material(*kind, &tile.colors);
+        let mut material = material_of(*kind, &tile.colors);
         // Textures and places on them have the same order: the photo, then the relief.
         let mut texture = 0;
         if !part.picture_places.is_empty() {
@@ -49,60 +49,44 @@ pub(crate) fn write(
         materials.push(material);
         primitives.push(primitive);
     }
-    let table = if tile.roads.is_empty() { None } else { Some(file.table(&tile.roads)) };
-    let picture = tile.picture.as_deref().map(|jpeg| (jpeg, "image/jpeg"));
-    let relief = tile.relief.as_ref().map(|relief| (&relief.png[..], "image/png"));
-    let images: Vec<Value> = picture
-        .into_iter()
-        .chain(relief)
-        .map(
-            |(bytes, mime)| json!({ "bufferView": file.plain(bytes, json!({})), "mimeType": mime }),
-        )
-        .collect();
-    let mut document = file.document(tile, &primitives, &materials, table);
-    if !images.is_empty() {
-        document["samplers"] = json!([sampler()]);
-        document["textures"] =
-            (0..images.len()).map(|source| json!({ "source": source, "sampler": 0 })).collect();
-        document["images"] = json!(images);
+    let table = if tile.roads.is_empty() { None } else { Some(file.table(&tile.roads)?) };
+    if let Some(jpeg) = &tile.picture {
+        file.gltf.picture(jpeg, json!({ "mimeType": "image/jpeg" }))?;
     }
-    write_container(into, &document, file.bytes.len() as u64, |into| into.write_all(&file.bytes))
+    if let Some(relief) = &tile.relief {
+        file.gltf.picture(&relief.png, json!({ "mimeType": "image/png" }))?;
+    }
+    let document = file.document(tile, &primitives, &materials, table);
+    let Gltf { bytes, length, .. } = file.gltf;
+    write_container(into, &document, length, |into| into.write_all(&bytes))
 }
 
-fn material(kind: PrimitiveKind, colors: &[Rgb]) -> Value {
-    let base = |rgb: [f32; 3]| {
-        let [red, green, blue] = rgb;
-        json!({
-            "baseColorFactor": [red, green, blue, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0,
-        })
-    };
-    let name = kind.name();
-    match (kind, kind.class()) {
-        (PrimitiveKind::BridgeSlabs(_), _) => {
-            json!({ "name": name, "pbrMetallicRoughness": base(SLAB_COLOR.map(linear)) })
-        }
-        (_, None) => json!({ "name": name, "pbrMetallicRoughness": base([1.0; 3]) }),
+fn material_of(kind: PrimitiveKind, colors: &[Rgb]) -> Value {
+    let is_slab = matches!(kind, PrimitiveKind::BridgeSlabs(_));
+    let of_class = kind.class().map(|class| colors[usize::from(class.number())]);
+    let color = if is_slab { SLAB_COLOR } else { of_class.unwrap_or([1.0; 3]) };
+    let mut material = material(&kind.name(), color);
+    if of_class.is_some() && !is_slab {
         // Colours of roads are those of the legend, whatever the light.
-        (_, Some(class)) => json!({
-            "name": name,
-            "pbrMetallicRoughness": base(colors[usize::from(class.number())].map(linear)),
-            "extensions": { "KHR_materials_unlit": {} },
-        }),
+        material["extensions"] = json!({ "KHR_materials_unlit": {} });
     }
+    material
 }
 
-#[derive(Default)]
 struct File {
-    bytes: Vec<u8>,
+    gltf: Gltf<Vec<u8>>,
     /// Length of what compressed views decode to.
     decoded: usize,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
     is_compressed: bool,
 }
 
 impl File {
-    fn primitive(&mut self, kind: PrimitiveKind, part: &Primitive) -> io::Result<Value> {
+    fn primitive(
+        &mut self,
+        kind: PrimitiveKind,
+        part: &Primitive,
+        roads: &[RoadRow],
+    ) -> io::Result<Value> {
         let mut attributes = Map::new();
         let at = &mut attributes;
         self.attribute(at, "POSITION", &part.positions, positions(&part.positions))?;
@@ -117,13 +101,12 @@ impl File {
         let mut primitive = json!({ "mode": TRIANGLES, "extras": { "part": kind.name() } });
         if let Some(class) = kind.class() {
             // Every whole number to 2²⁴ is an f32, and all readers know attributes of them.
-            let features: Vec<f32> = part.features.iter().map(|row| *row as f32).collect();
+            let row_of = |way: &i64| roads.partition_point(|row| row.way_id < *way) as f32;
+            let features: Vec<f32> = part.ways.iter().map(row_of).collect();
             self.attribute(at, "_FEATURE_ID_0", &features, floats("SCALAR"))?;
-            let mut rows = part.features.clone();
-            rows.sort_unstable();
-            rows.dedup();
+            let ways: BTreeSet<i64> = part.ways.iter().copied().collect();
             primitive["extensions"] = json!({ "EXT_mesh_features": { "featureIds": [{
-                "featureCount": rows.len(), "attribute": 0, "propertyTable": 0, "label": "way",
+                "featureCount": ways.len(), "attribute": 0, "propertyTable": 0, "label": "way",
             }] } });
             primitive["extras"]["frc"] = json!(class.number());
         }
@@ -136,7 +119,7 @@ impl File {
             | PrimitiveKind::BridgeSlabs(_) => {}
         }
         primitive["attributes"] = Value::Object(attributes);
-        primitive["indices"] = self.indices(&part.indices, part.positions.len(), kind)?;
+        primitive["indices"] = json!(self.indices(&part.indices, part.positions.len(), kind)?);
         Ok(primitive)
     }
 
@@ -146,19 +129,14 @@ impl File {
         attributes: &mut Map<String, Value>,
         name: &str,
         vertices: &[T],
-        mut accessor: Value,
+        accessor: Value,
     ) -> io::Result<()> {
         if !vertices.is_empty() {
-            accessor["bufferView"] = json!(self.vertices(vertices)?);
-            accessor["count"] = json!(vertices.len());
-            attributes.insert(name.to_owned(), self.accessor(accessor));
+            let view = self.vertices(vertices)?;
+            let number = self.gltf.accessor(accessor, view, vertices.len());
+            attributes.insert(name.to_owned(), json!(number));
         }
         Ok(())
-    }
-
-    fn accessor(&mut self, accessor: Value) -> Value {
-        self.accessors.push(accessor);
-        json!(self.accessors.len() - 1)
     }
 
     /// A view of vertices; returns its number.
@@ -170,9 +148,9 @@ impl File {
                 meshopt::encode_vertex_buffer_level(vertices, VERTEX_LEVEL, Some(VERTEX_VERSION));
             let encoded = encoded.map_err(io::Error::other)?;
             let how = json!({ "mode": "ATTRIBUTES", "count": vertices.len() });
-            return Ok(self.compressed(&encoded, plain.len(), stride, how, ARRAY_BUFFER));
+            return self.compressed(&encoded, plain.len(), stride, how, ARRAY_BUFFER);
         }
-        Ok(self.plain(plain, json!({ "byteStride": stride, "target": ARRAY_BUFFER })))
+        self.gltf.view(plain, json!({ "byteStride": stride, "target": ARRAY_BUFFER }))
     }
 
     fn indices(
@@ -180,7 +158,7 @@ impl File {
         indices: &[u32],
         vertices: usize,
         kind: PrimitiveKind,
-    ) -> io::Result<Value> {
+    ) -> io::Result<usize> {
         let is_short = vertices < SHORT_INDICES;
         // The largest number restarts strips, of either length.
         const { assert!(RESTART as u16 == u16::MAX) };
@@ -200,23 +178,13 @@ impl File {
             };
             let encoded = encoded.map_err(io::Error::other)?;
             let how = json!({ "mode": mode, "count": indices.len() });
-            self.compressed(&encoded, plain.len(), stride, how, ELEMENT_ARRAY_BUFFER)
+            self.compressed(&encoded, plain.len(), stride, how, ELEMENT_ARRAY_BUFFER)?
         } else {
-            self.plain(plain, json!({ "target": ELEMENT_ARRAY_BUFFER }))
+            self.gltf.view(plain, json!({ "target": ELEMENT_ARRAY_BUFFER }))?
         };
         let component = if is_short { U16 } else { U32 };
-        Ok(self.accessor(json!({
-            "bufferView": view, "componentType": component, "type": "SCALAR", "count": indices.len(),
-        })))
-    }
-
-    fn plain(&mut self, bytes: &[u8], mut view: Value) -> usize {
-        view["buffer"] = json!(0);
-        view["byteOffset"] = json!(self.bytes.len());
-        view["byteLength"] = json!(bytes.len());
-        self.put(bytes, CHUNK_ALIGNMENT);
-        self.views.push(view);
-        self.views.len() - 1
+        let accessor = json!({ "componentType": component, "type": "SCALAR" });
+        Ok(self.gltf.accessor(accessor, view, indices.len()))
     }
 
     /// A view whose bytes are decoded into a second buffer, which no file has.
@@ -227,11 +195,9 @@ impl File {
         stride: usize,
         mut how: Value,
         target: u32,
-    ) -> usize {
-        how["buffer"] = json!(0);
-        how["byteOffset"] = json!(self.bytes.len());
-        how["byteLength"] = json!(encoded.len());
+    ) -> io::Result<usize> {
         how["byteStride"] = json!(stride);
+        self.gltf.put(encoded, &mut how)?;
         let mut view = json!({
             "buffer": 1, "byteOffset": self.decoded, "byteLength": decoded, "target": target,
             "extensions": { "EXT_meshopt_compression": how },
@@ -239,56 +205,41 @@ impl File {
         if target == ARRAY_BUFFER {
             view["byteStride"] = json!(stride);
         }
-        self.decoded = (self.decoded + decoded).next_multiple_of(CHUNK_ALIGNMENT);
-        self.put(encoded, CHUNK_ALIGNMENT);
-        self.views.push(view);
-        self.views.len() - 1
-    }
-
-    fn put(&mut self, bytes: &[u8], alignment: usize) {
-        self.bytes.extend(bytes);
-        self.bytes.resize(self.bytes.len().next_multiple_of(alignment), 0);
+        // Vertices and indices begin at a multiple of four, as they do in a buffer that is there.
+        self.decoded = (self.decoded + decoded).next_multiple_of(4);
+        self.gltf.views.push(view);
+        Ok(self.gltf.views.len() - 1)
     }
 
     /// The table of roads, column by column.
-    fn table(&mut self, rows: &[RoadRow]) -> Value {
-        self.bytes.resize(self.bytes.len().next_multiple_of(TABLE_ALIGNMENT), 0);
+    fn table(&mut self, rows: &[RoadRow]) -> io::Result<Value> {
+        let gltf = &mut self.gltf;
         let mut column = |bytes: &[u8]| {
-            let view = json!({
-                "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len().max(1),
-            });
+            gltf.align(TABLE_ALIGNMENT)?;
             // A view has a byte at least.
-            self.bytes.extend(if bytes.is_empty() { &[0] } else { bytes });
-            self.bytes.resize(self.bytes.len().next_multiple_of(TABLE_ALIGNMENT), 0);
-            self.views.push(view);
-            self.views.len() - 1
+            gltf.view(if bytes.is_empty() { &[0] } else { bytes }, json!({}))
         };
         let ids: Vec<u8> = rows.iter().flat_map(|row| row.way_id.to_le_bytes()).collect();
         let classes: Vec<u8> = rows.iter().map(|row| row.class).collect();
         let mut properties = json!({
-            "way_id": { "values": column(&ids) },
-            "class": { "values": column(&classes) },
+            "way_id": { "values": column(&ids)? },
+            "class": { "values": column(&classes)? },
         });
-        let texts: [(&str, TextOf); 4] = [
-            ("name", |row| &row.name),
-            ("ref", |row| &row.reference),
-            ("highway", |row| &row.highway),
-            ("structure", |row| &row.structure),
-        ];
-        for (name, text) in texts {
+        for (number, name) in ["name", "ref", "highway", "structure"].into_iter().enumerate() {
             let mut ends = vec![0_u32];
             let mut bytes = Vec::new();
             for row in rows {
-                bytes.extend(text(row).as_bytes());
+                bytes.extend(row.texts[number].as_bytes());
                 ends.push(bytes.len() as u32);
             }
             let offsets: Vec<u8> = ends.iter().flat_map(|end| end.to_le_bytes()).collect();
             properties[name] = json!({
-                "values": column(&bytes), "stringOffsets": column(&offsets),
+                "values": column(&bytes)?, "stringOffsets": column(&offsets)?,
                 "stringOffsetType": "UINT32",
             });
         }
-        json!({
+        gltf.align(TABLE_ALIGNMENT)?;
+        Ok(json!({
             "schema": {
                 "id": "corniche_roads",
                 "classes": { "road": {
@@ -309,7 +260,7 @@ impl File {
             "propertyTables": [{
                 "name": "roads", "class": "road", "count": rows.len(), "properties": properties,
             }],
-        })
+        }))
     }
 
     fn document(
@@ -319,14 +270,21 @@ impl File {
         materials: &[Value],
         table: Option<Value>,
     ) -> Value {
+        let asset = json!({
+            "version": "2.0", "generator": tile.generator, "copyright": tile.copyright,
+        });
+        let node = json!({ "name": tile.name, "mesh": 0, "translation": tile.translation });
+        let mesh = json!({ "name": tile.name, "primitives": primitives });
+        let mut document = self.gltf.document(&asset, (&[node], &[mesh]), materials);
         let mut used = Vec::new();
-        let mut buffers = vec![json!({ "byteLength": self.bytes.len() })];
         if self.is_compressed {
             used.push("EXT_meshopt_compression");
-            buffers.push(json!({
+            document["extensionsRequired"] = json!(used);
+            let whole = document["buffers"][0].take();
+            document["buffers"] = json!([whole, {
                 "byteLength": self.decoded,
                 "extensions": { "EXT_meshopt_compression": { "fallback": true } },
-            }));
+            }]);
         }
         if table.is_some() {
             used.extend(["EXT_mesh_features", "EXT_structural_metadata", "KHR_materials_unlit"]);
@@ -334,27 +292,11 @@ impl File {
         if tile.parts.iter().any(|(kind, _)| matches!(kind, PrimitiveKind::RoadStrips(_))) {
             used.push("KHR_mesh_primitive_restart");
         }
-        let mut document = json!({
-            "asset": {
-                "version": "2.0", "generator": tile.generator, "copyright": tile.copyright,
-            },
-            "scene": 0,
-            "scenes": [{ "nodes": [0] }],
-            "nodes": [{ "name": tile.name, "mesh": 0, "translation": tile.translation }],
-            "meshes": [{ "name": tile.name, "primitives": primitives }],
-            "materials": materials,
-            "accessors": self.accessors,
-            "bufferViews": self.views,
-            "buffers": buffers,
-        });
         if let Some(table) = table {
             document["extensions"] = json!({ "EXT_structural_metadata": table });
         }
         if !used.is_empty() {
             document["extensionsUsed"] = json!(used);
-        }
-        if self.is_compressed {
-            document["extensionsRequired"] = json!(["EXT_meshopt_compression"]);
         }
         document
     }

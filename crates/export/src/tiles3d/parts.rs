@@ -6,7 +6,7 @@ use corniche_styles::Rgb;
 use crate::{gltf::SLAB_NAME, relief_map::ReliefMap};
 
 /// A list of vertices of one material, as glTF has it: y upwards.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Clone, Default)]
 pub(crate) struct Primitive {
     pub(crate) positions: Vec<[f32; 3]>,
     pub(crate) normals: Vec<[f32; 3]>,
@@ -17,8 +17,8 @@ pub(crate) struct Primitive {
     /// Where on the tile's relief, and the tangents that it is read with, sides told by 1; empty without one, and for roads.
     pub(crate) relief_places: Vec<[f32; 2]>,
     pub(crate) tangents: Vec<[f32; 4]>,
-    /// Rows of the table of roads.
-    pub(crate) features: Vec<u32>,
+    /// The ways of the vertices of roads.
+    pub(crate) ways: Vec<i64>,
     /// Three to a triangle, two to a line; strips with [`RESTART`] between them.
     pub(crate) indices: Vec<u32>,
 }
@@ -27,7 +27,7 @@ pub(crate) struct Primitive {
 pub(crate) const RESTART: u32 = u32::MAX;
 
 /// What a part is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) enum PrimitiveKind {
     Terrain,
     Skirt,
@@ -63,18 +63,16 @@ impl PrimitiveKind {
 }
 
 /// A row of the table of roads.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Clone)]
 pub(crate) struct RoadRow {
     pub(crate) way_id: i64,
     pub(crate) class: u8,
-    pub(crate) name: String,
-    pub(crate) reference: String,
-    pub(crate) highway: String,
-    pub(crate) structure: String,
+    /// Name, reference, `highway`, and bridge or tunnel.
+    pub(crate) texts: [String; 4],
 }
 
 /// A tile of glTF.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct TileContent {
     pub(crate) name: String,
     /// The translation of the node, y upwards.
@@ -89,9 +87,4 @@ pub(crate) struct TileContent {
     pub(crate) relief: Option<ReliefMap>,
     pub(crate) copyright: String,
     pub(crate) generator: String,
-}
-
-/// A position or direction of the root frame along glTF's axes.
-pub(crate) fn y_up<T: std::ops::Neg<Output = T>>([x, y, z]: [T; 3]) -> [T; 3] {
-    [x, z, -y]
 }

@@ -3,11 +3,10 @@
 use std::collections::HashMap;
 
 use corniche_geom::{LatticeBounds, TileId};
-use corniche_tileset::Manifest;
 
 use crate::{
     error::CoordinatesError,
-    globe::{RootFrame, cross, dot, unit},
+    globe::{RootFrame, between, cross, dot, middle_of, unit},
     places::Places,
     relief_map::tangent,
     surfaces::{GroundMesh, across},
@@ -26,7 +25,7 @@ pub(crate) fn step_m(reach_m: f64) -> f64 {
 }
 
 /// A vertex on the globe.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct PlacedVertex {
     /// The position from the tile's middle, along the root frame's axes, metres.
     pub(crate) at_m: [f32; 3],
@@ -38,11 +37,11 @@ pub(crate) struct PlacedVertex {
     /// Shares of the way across the tile, from the west and from the north.
     pub(crate) across: [f32; 2],
     /// The tile's sides on which it lies: west, east, south, north.
-    pub(crate) sides: [bool; 4],
+    sides: [bool; 4],
 }
 
 /// A tile on the globe.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(crate) struct PlacedTile {
     /// The middle in the root frame; whole steps.
     pub(crate) middle_m: [f64; 3],
@@ -53,9 +52,11 @@ pub(crate) struct PlacedTile {
     pub(crate) axes: [[f64; 3]; 3],
 }
 
+/// Longitude and latitude of a place, and where it is in the root frame.
+type OnGlobe = ([f64; 2], [f64; 3]);
+
 /// Where a tile goes.
 pub(crate) struct Placing<'a> {
-    pub(crate) manifest: &'a Manifest,
     pub(crate) places: &'a Places<'a>,
     pub(crate) root: &'a RootFrame,
     /// Step of the level's positions.
@@ -70,36 +71,24 @@ impl Placing<'_> {
         id: TileId,
         mesh: &GroundMesh,
     ) -> Result<PlacedTile, CoordinatesError> {
-        let frame = &self.manifest.frame;
+        let frame = &self.places.manifest.frame;
         let bounds = frame.tile_lattice_bounds(id);
-        let mut plan: Vec<[f64; 2]> = mesh
-            .vertices
-            .iter()
-            .map(|vertex| frame.position_of_fraction_m(mesh.on_lattice(vertex)))
-            .collect();
-        let mut heights_m: Vec<f64> = mesh.vertices.iter().map(|vertex| vertex.height_m).collect();
-        self.places.to_wgs84(&mut plan, &mut heights_m)?;
+        let places = mesh.vertices.iter().map(|vertex| (mesh.on_lattice(vertex), vertex.height_m));
+        let placed = self.on_globe(places)?;
         let axes = self.axes(mesh)?;
-        let at: Vec<[f64; 3]> = plan
-            .iter()
-            .zip(&heights_m)
-            .map(|(&[lon, lat], &height_m)| {
-                self.root.of([lon, lat, height_m]).map(|axis| self.snap(axis))
-            })
-            .collect();
-        let middle_m = middle_of(&at).map(|axis| self.snap(axis));
+        let middle_m = middle_of(&placed.iter().map(|(_, at)| *at)).map(|axis| self.snap(axis));
         let mut tile = PlacedTile {
             middle_m,
-            vertices: Vec::with_capacity(at.len()),
+            vertices: Vec::with_capacity(placed.len()),
             triangles: Vec::with_capacity(mesh.triangles.len()),
             labels: Vec::with_capacity(mesh.labels.len()),
             axes,
         };
         let mut known: HashMap<([u32; 3], Option<[u32; 3]>), u32> =
-            HashMap::with_capacity(at.len());
-        let mut number = Vec::with_capacity(at.len());
-        for (index, vertex) in mesh.vertices.iter().enumerate() {
-            let at_m = [0, 1, 2].map(|axis| (at[index][axis] - middle_m[axis]) as f32);
+            HashMap::with_capacity(placed.len());
+        let mut number = Vec::with_capacity(placed.len());
+        for (vertex, (place_deg, at)) in mesh.vertices.iter().zip(placed) {
+            let at_m = between(middle_m, at).map(|axis| axis as f32);
             let next = tile.vertices.len() as u32;
             // Adding 0 makes one of both zeros.
             let bits = |vector: [f32; 3]| vector.map(|axis| (axis + 0.0).to_bits());
@@ -110,7 +99,7 @@ impl Placing<'_> {
             let on_sides = sides(mesh.on_lattice(vertex), &bounds);
             let sides = on_sides.map(|on_side| on_side && !vertex.on_slab);
             if place == next {
-                let grid = grid_axes(axes, self.root.up_at(plan[index]));
+                let grid = grid_axes(axes[1], self.root.up_at(place_deg));
                 let [normal, tangent] =
                     [vertex.normal, tangent(vertex.normal)].map(|along| turned(along, grid));
                 let height_m = vertex.height_m;
@@ -134,17 +123,24 @@ impl Placing<'_> {
     /// Places on the lattice with heights, from the middle of a tile.
     pub(crate) fn positions(
         &self,
-        places: &[([f64; 2], f64)],
+        places: impl Iterator<Item = ([f64; 2], f64)>,
         middle_m: [f64; 3],
     ) -> Result<Vec<[f32; 3]>, CoordinatesError> {
-        let frame = &self.manifest.frame;
-        let mut plan: Vec<[f64; 2]> =
-            places.iter().map(|(at, _)| frame.position_of_fraction_m(*at)).collect();
-        let mut heights_m: Vec<f64> = places.iter().map(|(_, height_m)| *height_m).collect();
+        let placed = self.on_globe(places)?.into_iter();
+        Ok(placed.map(|(_, at)| between(middle_m, at).map(|axis| axis as f32)).collect())
+    }
+
+    /// Places on the lattice with heights, on the globe.
+    fn on_globe(
+        &self,
+        places: impl Iterator<Item = ([f64; 2], f64)>,
+    ) -> Result<Vec<OnGlobe>, CoordinatesError> {
+        let frame = &self.places.manifest.frame;
+        let (mut plan, mut heights_m): (Vec<[f64; 2]>, Vec<f64>) =
+            places.map(|(at, height_m)| (frame.position_of_fraction_m(at), height_m)).unzip();
         self.places.to_wgs84(&mut plan, &mut heights_m)?;
-        let placed = plan.iter().zip(heights_m).map(|(&[lon, lat], height_m)| {
-            let at = self.root.of([lon, lat, height_m]);
-            [0, 1, 2].map(|axis| (self.snap(at[axis]) - middle_m[axis]) as f32)
+        let placed = plan.into_iter().zip(heights_m).map(|([lon, lat], height_m)| {
+            ([lon, lat], self.root.of([lon, lat, height_m]).map(|axis| self.snap(axis)))
         });
         Ok(placed.collect())
     }
@@ -155,22 +151,19 @@ impl Placing<'_> {
 
     /// Grid east, grid north and up in the middle of a tile, from two places beside it.
     fn axes(&self, mesh: &GroundMesh) -> Result<[[f64; 3]; 3], CoordinatesError> {
-        let frame = &self.manifest.frame;
+        let frame = &self.places.manifest.frame;
         let [x, y] = frame.position_m(mesh.middle);
         let beside = frame.cell().north_m;
         let mut plan = [[x, y - beside], [x, y + beside], [x, y]];
         self.places.to_wgs84_plan(&mut plan)?;
         let [south, north, middle] = plan;
         let at = |[lon, lat]: [f64; 2]| self.root.of([lon, lat, 0.0]);
-        let ([s, n], up) = ([at(south), at(north)], self.root.up_at(middle));
-        let northwards = [0, 1, 2].map(|axis| n[axis] - s[axis]);
-        let east = unit(cross(northwards, up));
-        Ok([east, cross(up, east), up])
+        Ok(grid_axes(between(at(south), at(north)), self.root.up_at(middle)))
     }
 }
 
 /// East, north and up of the grid where `up` is upwards.
-fn grid_axes([_, grid_north, _]: [[f64; 3]; 3], up: [f64; 3]) -> [[f64; 3]; 3] {
+fn grid_axes(grid_north: [f64; 3], up: [f64; 3]) -> [[f64; 3]; 3] {
     let east = unit(cross(grid_north, up));
     [east, cross(up, east), up]
 }
@@ -182,23 +175,13 @@ fn turned(along: [f32; 3], [east, north, up]: [[f64; 3]; 3]) -> [f32; 3] {
     unit(turned).map(|axis| axis as f32)
 }
 
-/// The middle of the box around some positions.
-fn middle_of(at: &[[f64; 3]]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| {
-        let [low, high] = at.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
-            [low.min(at[axis]), high.max(at[axis])]
-        });
-        f64::midpoint(low, high)
-    })
-}
-
 fn sides([u, v]: [f64; 2], bounds: &LatticeBounds) -> [bool; 4] {
     let is_at = |here: f64, line: i64| (here - line as f64).abs() < f64::MIN_POSITIVE;
     [is_at(u, bounds.min.u), is_at(u, bounds.max.u), is_at(v, bounds.min.v), is_at(v, bounds.max.v)]
 }
 
 /// A box along some axes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub(crate) struct TileBox {
     axes: [[f64; 3]; 3],
     low: [f64; 3],
@@ -257,6 +240,47 @@ impl TileBox {
         });
         // Tenths of a millimetre are enough beside the margin.
         middle.into_iter().chain(half).map(|number| (number * 1e4).round() / 1e4).collect()
+    }
+}
+
+/// The walls of a tile.
+#[derive(Clone, Default)]
+pub(crate) struct Skirt {
+    /// Positions from the tile's middle, with the tile's vertex whose normal and colour they have.
+    pub(crate) vertices: Vec<([f32; 3], u32)>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+impl Skirt {
+    /// Walls of a depth below each edge along a side of the tile.
+    pub(crate) fn below(tile: &PlacedTile, depth_m: f64) -> Self {
+        let mut skirt = Self::default();
+        let mut place = vec![u32::MAX; tile.vertices.len()];
+        let [.., up] = tile.axes;
+        for triangle in &tile.triangles {
+            for k in 0..3 {
+                let ends = [triangle[k], triangle[(k + 1) % 3]];
+                let [one, other] = ends.map(|vertex| tile.vertices[vertex as usize].sides);
+                if !(0..4).any(|side| one[side] && other[side]) {
+                    continue;
+                }
+                // An edge that two triangles share along a side comes from vertices that fell together.
+                let [a, b] = ends.map(|vertex| {
+                    let place = &mut place[vertex as usize];
+                    if *place == u32::MAX {
+                        *place = skirt.vertices.len() as u32;
+                        let top = tile.vertices[vertex as usize].at_m;
+                        let bottom: [f32; 3] = [0, 1, 2]
+                            .map(|axis| (f64::from(top[axis]) - depth_m * up[axis]) as f32);
+                        skirt.vertices.extend([(top, vertex), (bottom, vertex)]);
+                    }
+                    *place
+                });
+                // Seen from outside.
+                skirt.triangles.extend([[b, a, a + 1], [b, a + 1, b + 1]]);
+            }
+        }
+        skirt
     }
 }
 

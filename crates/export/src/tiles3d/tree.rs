@@ -17,19 +17,19 @@ use super::{content::TileFacts, placed::TileBox};
 use crate::globe::RootFrame;
 
 /// The tileset that is opened first.
-pub(crate) const ROOT_NAME: &str = "tileset.json";
+const ROOT_NAME: &str = "tileset.json";
 /// Packages of more tiles are written as several documents.
 const TILES_OF_ONE_DOCUMENT: usize = 300;
 /// Levels in a document of several.
 const LEVELS_OF_A_DOCUMENT: u8 = 4;
 
 /// A tile of the tree.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Branch {
-    pub(crate) tile_box: TileBox,
+#[derive(Clone, Copy)]
+struct Branch {
+    tile_box: TileBox,
     /// Never less than that of a child.
-    pub(crate) error_m: f64,
-    pub(crate) facts: TileFacts,
+    error_m: f64,
+    facts: TileFacts,
 }
 
 /// The extension of tilesets whose contents are points, lines and areas, to be drawn as a client's style says.
@@ -38,7 +38,7 @@ pub(crate) struct Branch {
 const VECTOR_EXTENSION: &str = "3DTILES_content_gltf_vector";
 
 /// What tiles of a tileset hold.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 pub(crate) enum Contents {
     /// All have a model.
     All,
@@ -48,7 +48,7 @@ pub(crate) enum Contents {
 
 /// All tiles, by their place.
 pub(crate) struct Tree<'a> {
-    pub(crate) manifest: &'a Manifest,
+    manifest: &'a Manifest,
     branches: BTreeMap<TileId, Branch>,
     documents: bool,
 }

@@ -12,11 +12,10 @@ use corniche_tileset::{FilePackage, Manifest};
 use corniche_work::{Observer, Stage, workers::make_all};
 
 use super::{
-    content::{self, LevelOfTiles, TileFacts},
+    content::{self, LevelOfTiles, TileFacts, TileRoads, Tiles3dRequest},
     glb,
     parts::TileContent,
     placed::{Placing, TileBox, step_m},
-    tiles3d_request::{TileRoads, Tiles3dRequest},
     tree::{Contents, Tree, content_name},
     vector_style,
 };
@@ -88,7 +87,7 @@ pub fn export_tiles3d(
 ) -> Result<Tiles3dSummary, Tiles3dError> {
     let manifest = package.manifest();
     let finest = crate::read::level(package, request.finest_level)?;
-    let heights = Places::new(manifest, request.coordinates)?.heights().to_owned();
+    let heights = Places::new(manifest, request.coordinates)?.heights;
     let mut ids = package.tile_ids()?;
     ids.retain(|id| id.z() <= finest);
     let failed = |source| Tiles3dError::Write { source };
@@ -276,12 +275,7 @@ impl Job<'_> {
 
     fn tile(&self, id: TileId, places: &Places<'_>) -> Result<Option<Written>, Tiles3dError> {
         let level = &self.levels[usize::from(id.z())];
-        let placing = Placing {
-            manifest: self.package.manifest(),
-            places,
-            root: &self.root,
-            step_m: level.step_m,
-        };
+        let placing = Placing { places, root: &self.root, step_m: level.step_m };
         let made = content::make(self.package, id, self.request, &self.lines, &placing, level)?;
         let Some(made) = made else { return Ok(None) };
         let write = |folder: &Path, content: &TileContent| {

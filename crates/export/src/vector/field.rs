@@ -39,19 +39,8 @@ pub struct Field {
     pub meaning: &'static str,
 }
 
-impl Field {
-    pub(crate) const fn new(
-        name: &'static str,
-        kind: FieldKind,
-        unit: &'static str,
-        meaning: &'static str,
-    ) -> Self {
-        Self { name, kind, unit, meaning }
-    }
-}
-
 /// The value of a field.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) enum Value {
     Integer(i64),
     Real(f64),
@@ -60,15 +49,50 @@ pub(crate) enum Value {
     Null,
 }
 
+impl From<i64> for Value {
+    fn from(number: i64) -> Self {
+        Self::Integer(number)
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Real(number)
+    }
+}
+
+impl From<&str> for Value {
+    /// GDAL's texts end at a zero byte, which OpenStreetMap's never have and damaged ones may.
+    fn from(text: &str) -> Self {
+        Self::Text(text.replace('\0', "\u{fffd}"))
+    }
+}
+
+impl<T: Into<Self>> From<Option<T>> for Value {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Self::Null, Into::into)
+    }
+}
+
+/// A number rounded to whole micrometres, so that sums of rounding do not fill files with digits.
+pub(crate) fn real(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
+/// A text; `None` where it is empty.
+pub(crate) fn text(text: &str) -> Option<&str> {
+    Some(text).filter(|text| !text.is_empty())
+}
+
 /// One feature: a value for each field, and its geometry.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct Record {
     pub(crate) values: Vec<Value>,
     pub(crate) shape: Shape,
 }
 
 /// The geometries that a layer holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) enum ShapeKind {
     /// [`Shape::Lines`]
     Lines,
@@ -79,7 +103,7 @@ pub(crate) enum ShapeKind {
 }
 
 /// The geometry of a feature.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) enum Shape {
     /// Lines of x, y and height.
     Lines(Vec<Vec<[f64; 3]>>),
@@ -99,15 +123,19 @@ impl Shape {
 
 /// Declares fields together with what is in them, in one order.
 macro_rules! fields {
-    ($fields:ident, $values:ident, $of:ident: $type:ty: $($name:literal, $kind:ident, $unit:literal, $meaning:literal, $value:expr;)+) => {
-        const $fields: &[Field] = &[
-            $(Field { name: $name, kind: FieldKind::$kind, unit: $unit, meaning: $meaning },)+
+    ($fields:ident, $of:ident: $type:ty: $($name:literal, $kind:ident, $unit:literal, $meaning:literal, $value:expr;)+) => {
+        const $fields: &[(Field, fn($type) -> Value)] = &[
+            $((
+                Field { name: $name, kind: FieldKind::$kind, unit: $unit, meaning: $meaning },
+                |$of| Value::from($value),
+            ),)+
         ];
-
-        fn $values($of: $type) -> Vec<Value> {
-            vec![$($value),+]
-        }
     };
 }
 
 pub(crate) use fields;
+
+/// The fields among fields with what is in them.
+pub(crate) fn fields_of<V>(fields: &[(Field, V)]) -> Vec<Field> {
+    fields.iter().map(|(field, _)| *field).collect()
+}

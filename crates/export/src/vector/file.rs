@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use gdal::{
     Dataset, Driver, DriverManager, Metadata as _,
     errors::GdalError,
-    spatial_ref::{AxisMappingStrategy, SpatialRef},
     vector::{
         Defn, Feature, FieldDefn, Geometry, Layer as GdalLayer, LayerOptions, OGRFieldType,
         OGRwkbGeometryType,
@@ -14,7 +13,7 @@ use gdal::{
 
 use crate::{
     error::GdalFileError,
-    gdal_writing::{GdalSettings, plain_text, without_nul},
+    gdal_writing::{self, GdalSettings, plain_text, without_nul},
     vector::{
         cell::cell_text,
         field::{Field, FieldKind, Record, Shape, ShapeKind, Value},
@@ -32,7 +31,7 @@ const SETTINGS: [(&str, &str); 2] =
     [("OGR_SQLITE_SYNCHRONOUS", "OFF"), ("OGR_CURRENT_DATE", geopackage::NO_TIME)];
 
 /// What a file says of itself and of its features.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(crate) struct Layer {
     pub(crate) name: &'static str,
     pub(crate) fields: Vec<Field>,
@@ -67,8 +66,6 @@ impl VectorFile {
         format: VectorFormat,
         layer: Layer,
     ) -> Result<Self, GdalFileError> {
-        corniche_gis::quiet();
-        corniche_gis::forget();
         let settings = GdalSettings::set(&SETTINGS);
         let layer = layer.plain();
         let no_driver = |_| GdalFileError::NoDriver { driver: format.driver() };
@@ -129,22 +126,13 @@ impl VectorFile {
         self.write()?;
         let Self { path, format, dataset, layer, heights, written, .. } = self;
         if format == VectorFormat::GeoPackage {
-            let told = match heights {
-                Some(heights) => {
-                    let description = layer.about(&heights);
-                    geopackage::describe(&dataset, layer.name, &description)
-                }
-                None => Ok(()),
-            };
+            let told = heights.map_or(Ok(()), |heights| {
+                geopackage::describe(&dataset, layer.name, &layer.about(&heights))
+            });
             let styled = told.and_then(|()| geopackage::add_style(&dataset, layer.name));
             styled.map_err(|error| GdalFileError::write(&path, error))?;
         }
-        // What fails while a file is closed comes back from no call before GDAL 3.7.
-        corniche_gis::forget();
-        dataset.close().map_err(|error| GdalFileError::write(&path, error))?;
-        if let Some(source) = corniche_gis::failure() {
-            return Err(GdalFileError::write(&path, source));
-        }
+        gdal_writing::close(dataset, &path)?;
         whole::check(&path, format, written)
     }
 }
@@ -179,8 +167,7 @@ fn create(
             dataset.set_metadata_item(key, value, "")?;
         }
     }
-    let mut crs = SpatialRef::from_definition(&layer.crs)?;
-    crs.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+    let crs = gdal_writing::east_north(&layer.crs)?;
     let options = options(format, layer, driver);
     let options: Vec<&str> = options.iter().map(String::as_str).collect();
     let created = dataset.create_layer(LayerOptions {

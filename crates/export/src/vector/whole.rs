@@ -19,7 +19,7 @@ use crate::{error::GdalFileError, vector::format::VectorFormat};
 const FEATURE: &[u8] = b"{ \"type\": \"Feature\"";
 
 /// What is in a file of features.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Contents {
     pub(crate) features: u64,
     /// How many vertices all features have.
