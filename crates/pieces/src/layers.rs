@@ -22,9 +22,8 @@ use std::{
 };
 
 use corniche_areas::ClassedLayer;
-use corniche_geom::TileId;
 use corniche_spec::artifacts::Kind;
-use corniche_tileset::{AreasSection, EncodeError, LinesSection, SectionSize, SpansSection};
+use corniche_tileset::{PayloadSizes, Section, SectionSize};
 use corniche_work::Stage;
 use serde::{Deserialize, Serialize};
 
@@ -92,26 +91,23 @@ impl SectionLayer {
         }
     }
 
-    /// Adds a section to the payload of a tile.
-    ///
-    /// # Errors
-    /// See [`EncodeError`].
-    pub fn add_to(
-        self,
-        payload: &[u8],
-        id: TileId,
-        section: Vec<u8>,
-    ) -> Result<(Vec<u8>, SectionSize), EncodeError> {
+    /// The section of a payload with these bytes, which were kept.
+    #[must_use]
+    pub fn section_of(self, bytes: Vec<u8>) -> Section {
         match self {
-            Self::Areas => {
-                corniche_tileset::with_areas(payload, id, AreasSection::from_bytes(section))
-            }
-            Self::Lines(layer) => {
-                corniche_tileset::with_lines(payload, id, LinesSection::from_bytes(layer, section))
-            }
-            Self::Spans => {
-                corniche_tileset::with_spans(payload, id, SpansSection::from_bytes(section))
-            }
+            Self::Areas => Section::of_areas(bytes),
+            Self::Lines(layer) => Section::of_lines(layer, bytes),
+            Self::Spans => Section::of_spans(bytes),
+        }
+    }
+
+    /// What its section takes in a payload with these sizes.
+    #[must_use]
+    pub fn size_in(self, sizes: &PayloadSizes) -> SectionSize {
+        match self {
+            Self::Areas => sizes.areas,
+            Self::Lines(layer) => sizes.lines[layer as usize],
+            Self::Spans => sizes.spans,
         }
     }
 }

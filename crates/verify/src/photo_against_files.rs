@@ -145,7 +145,7 @@ fn look_at_colours(
     let again = Photo { levels, rgba: files.rgba.to_vec() };
     let coded = encode_photo(id, &again, quality).ok().flatten();
     // They have a photo; a quality that no coder has is no coding's loss.
-    let coded = coded.and_then(|section| section.decode(id).ok());
+    let coded = coded.and_then(|section| section.photo(id).ok());
     let coded = coded.as_ref().map(|photo| Picture { side: files.side, rgba: &photo.rgba });
     let losses = |of: &Picture<'_>| {
         [files.difference(of, [0, 0]).unwrap_or_default(), files.block_difference(of)]

@@ -5,7 +5,7 @@ use corniche_geom::{LatticePoint, TileId};
 use corniche_osm::{AreaLoss, AreaSummary};
 use corniche_spec::{Defect, artifacts::damaged};
 use corniche_store::{Artifacts, Scratch};
-use corniche_tileset::{AreaRecord, AreaRings, AreasSection, encode_areas};
+use corniche_tileset::{AreaRecord, AreaRings, encode_areas};
 use corniche_work::Stage;
 use serde::{Deserialize, Serialize};
 
@@ -184,7 +184,6 @@ fn put_section(
     let rings = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
     let counts = [areas.len() as u64, rings.map(|ring| ring.len() as u64).sum()];
     TileSection::put((SectionLayer::Areas, tile), store, counts, |id| {
-        let step = splitting.step(id.z());
-        Ok(encode_areas(id, splitting.frame, step, areas)?.map(AreasSection::into_bytes))
+        encode_areas(id, splitting.frame, splitting.step(id.z()), areas)
     })
 }

@@ -3,7 +3,7 @@
 use corniche_geom::TileId;
 use corniche_spec::artifacts::{self, ArtifactError};
 use corniche_store::Artifacts;
-use corniche_tileset::EncodeError;
+use corniche_tileset::{EncodeError, Section};
 use serde::{Deserialize, Serialize};
 
 use super::SectionLayer;
@@ -29,11 +29,11 @@ impl TileSection {
         (layer, tile): (SectionLayer, u64),
         store: &dyn Artifacts,
         [parts, points]: [u64; 2],
-        encode: impl FnOnce(TileId) -> Result<Option<Vec<u8>>, EncodeError>,
+        encode: impl FnOnce(TileId) -> Result<Option<Section>, EncodeError>,
     ) -> Result<(), ExtractError> {
         let key = layer.section().item(tile);
         let id = artifacts::tile_of(key)?;
-        let Some(section) = encode(id)? else { return Ok(()) };
+        let Some(section) = encode(id)?.map(Section::into_bytes) else { return Ok(()) };
         Ok(artifacts::put(store, key, &Self { section, parts, points })?)
     }
 

@@ -7,7 +7,7 @@ use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_osm::{ClassedLine, LineSummary};
 use corniche_spec::{artifacts::damaged, true_lengths::TrueLengths};
 use corniche_store::{Artifacts, Scratch};
-use corniche_tileset::{LineRecord, LinesSection, encode_lines};
+use corniche_tileset::{LineRecord, encode_lines};
 use corniche_work::Stage;
 
 use super::split::LineSplitting;
@@ -128,8 +128,7 @@ impl<'a> TileLayer for LinesLayer<'a> {
                 let points = parts.iter().map(|line| line.points.len() as u64).sum();
                 let counts = [parts.len() as u64, points];
                 TileSection::put((layer, tile), store, counts, |id| {
-                    let step = splitting.step(id.z());
-                    Ok(encode_lines(id, own, step, &parts)?.map(LinesSection::into_bytes))
+                    encode_lines(id, own, splitting.step(id.z()), &parts)
                 })
             },
         )?;

@@ -15,7 +15,7 @@ use corniche_spec::{
     artifacts::{self, Kind},
 };
 use corniche_tileset::{
-    OuterGround, SpanRun, SpansSection, encode_spans, limits::MAX_SPAN_POINTS, pmtiles_order,
+    OuterGround, SpanRun, encode_spans, limits::MAX_SPAN_POINTS, pmtiles_order,
 };
 use corniche_tin::{Placement, Surface, Tin};
 use corniche_work::{Stage, workers};
@@ -206,9 +206,8 @@ impl SpanSolving<'_> {
         let points = runs.iter().map(|run| run.points.len() as u64).sum();
         let counts = [runs.len() as u64, points];
         let tile = (SectionLayer::Spans, pmtiles_order(id));
-        TileSection::put(tile, self.of.store, counts, |id| {
-            Ok(encode_spans(id, self.of.frame, &runs)?.map(SpansSection::into_bytes))
-        })?;
+        let encode = |id| encode_spans(id, self.of.frame, &runs);
+        TileSection::put(tile, self.of.store, counts, encode)?;
         Ok(within)
     }
 }

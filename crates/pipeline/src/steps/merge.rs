@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use corniche_areas::ClassedLayer;
-use corniche_geom::TileId;
 use corniche_ground::{
     heights::pyramid::{HeightSums, all_there},
     terrain::{ground::GroundSource, recorded::RecordedTerrain},
@@ -14,7 +13,7 @@ use corniche_pieces::{
 };
 use corniche_spec::artifacts::{self, ArtifactError, Kind};
 use corniche_store::{OpenMode, Scratch, open_own};
-use corniche_tileset::{LevelRecord, Manifest, ReliefLevels, WriteError, Writer};
+use corniche_tileset::{LevelRecord, Manifest, PayloadBuilder, ReliefLevels, WriteError, Writer};
 use corniche_work::Stage;
 
 use super::{
@@ -74,8 +73,7 @@ pub(crate) fn make(
                 .into());
             }
             tiles.add(id, &record);
-            if context.store.has(Kind::SpanSection.item(item)) {
-                let (_, own) = spans::added(context, id, payload(context, id)?)?;
+            if let Some((_, own)) = spans::of_tile(context, id)? {
                 tiles.add_spans(id.z(), own);
             }
             fold.add(&record.fates)?;
@@ -151,12 +149,6 @@ fn check_levels(
     Ok(())
 }
 
-/// The payload of a tile that has one.
-fn payload(context: &Context<'_>, id: TileId) -> Result<Vec<u8>, BuildError> {
-    let key = Kind::Payload.of_tile(id);
-    Ok(context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?)
-}
-
 /// Writes the package.
 fn write(
     context: &Context<'_>,
@@ -173,9 +165,16 @@ fn write(
         .map_err(failed)?;
     for item in payloads {
         context.observer.check()?;
-        let id = artifacts::tile_of(Kind::Payload.item(item))?;
-        let (bytes, _) = spans::added(context, id, payload(context, id)?)?;
-        writer.add(id, &bytes).map_err(failed)?;
+        let key = Kind::Payload.item(item);
+        let id = artifacts::tile_of(key)?;
+        let mut payload =
+            context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?;
+        if let Some((spans, _)) = spans::of_tile(context, id)? {
+            let mut builder = PayloadBuilder::with_all_of(&payload, id)?;
+            builder.add(spans)?;
+            payload = builder.seal()?.bytes;
+        }
+        writer.add(id, &payload).map_err(failed)?;
         context.observer.advance(Stage::Package, 1);
     }
     writer.finish().map_err(failed)?;

@@ -19,7 +19,7 @@ use corniche_spec::{
     Defect,
     artifacts::{self, Kind},
 };
-use corniche_tileset::{OuterGround, Sections, decode};
+use corniche_tileset::{OuterGround, Section, Sections, decode};
 use corniche_tin::Tin;
 
 use crate::{BuildError, context::Context};
@@ -85,17 +85,16 @@ fn tin_of(context: &Context<'_>, id: TileId) -> Result<Option<Tin>, ExtractError
     Ok(payload.terrain.map(|terrain| terrain.tin).filter(|tin| !tin.is_empty()))
 }
 
-/// The payload of a tile with its section of spans, and what that takes.
-pub(crate) fn added(
+/// The section of spans of a tile, and how much is in it; `None` without spans.
+pub(crate) fn of_tile(
     context: &Context<'_>,
     id: TileId,
-    payload: Vec<u8>,
-) -> Result<(Vec<u8>, SectionOfTile), BuildError> {
-    let Some(TileSection { section, parts, points }) =
-        TileSection::get(SectionLayer::Spans, context.store, id)?
-    else {
-        return Ok((payload, SectionOfTile::default()));
-    };
-    let (bytes, size) = SectionLayer::Spans.add_to(&payload, id, section)?;
-    Ok((bytes, SectionOfTile { parts, points, bytes: size.stored }))
+) -> Result<Option<(Section, SectionOfTile)>, BuildError> {
+    let kept = TileSection::get(SectionLayer::Spans, context.store, id)?;
+    let of_tile = kept.map(|TileSection { section, parts, points }| {
+        let section = SectionLayer::Spans.section_of(section);
+        let bytes = section.size(id)?.stored;
+        Ok((section, SectionOfTile { parts, points, bytes }))
+    });
+    of_tile.transpose()
 }
