@@ -47,7 +47,6 @@ mod system_disk;
 pub use artifacts::{Artifacts, Key};
 pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 pub use error::StoreError;
-pub use files::Traffic;
 pub use groups::Groups;
 pub use ids::random_digits;
 pub use in_memory_store::{MemoryScratch, MemoryStore};

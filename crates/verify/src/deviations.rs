@@ -60,17 +60,15 @@ pub(crate) fn measure(
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, also those without ground: a coarser level may cover their nodes.
     let finest = DataTiles::of(plan).within(corniche_geom::TileId::ROOT);
-    observer.begin(Stage::Deviations, Some(finest.len() as u64));
     let mut truths: BTreeMap<TileId, TrueDeviation> = BTreeMap::new();
     let nodes_are_samples = plan.nodes_are_samples();
     let mut at_samples = samples::none(manifest);
-    workers::in_order_unless_cancelled(
-        observer,
+    workers::side_by_side(
+        (observer, Stage::Deviations),
         threads,
-        finest.len(),
+        &finest,
         || Ok::<_, VerifyError>(dem.reader(plan)),
-        |reader, index| {
-            let id = finest[index];
+        |reader, &id| {
             let read = reader.window(manifest.frame.tile_window(id))?;
             let mut found_at_samples = samples::none(manifest);
             let window = &read.heights;
@@ -100,11 +98,9 @@ pub(crate) fn measure(
             for (id, truth) in found {
                 truths.entry(id).or_default().merge(truth);
             }
-            observer.advance(Stage::Deviations, 1);
             Ok(())
         },
     )?;
-    observer.end(Stage::Deviations);
     Ok(Measured { by_tile: truths, at_samples })
 }
 

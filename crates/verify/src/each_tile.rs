@@ -26,26 +26,21 @@ pub(crate) fn each_tile<T: Send>(
     look: impl Fn(TileId) -> Result<T, VerifyError> + Sync,
     mut take: impl FnMut(TileId, T),
 ) -> Result<(), VerifyError> {
-    let ids = package.tile_ids()?;
-    observer.begin(Stage::Verify, Some(ids.len() as u64));
-    workers::in_order_unless_cancelled(
-        observer,
+    workers::side_by_side(
+        (observer, Stage::Verify),
         threads,
-        ids.len(),
-        || Ok::<_, VerifyError>(()),
-        |(), index| {
-            let found = look(ids[index])?;
+        &package.tile_ids()?,
+        || Ok(()),
+        |(), &id| {
+            let found = look(id)?;
             check_readable(package)?;
             Ok(found)
         },
-        |index, found| {
-            take(ids[index], found);
-            observer.advance(Stage::Verify, 1);
+        |&id, found| {
+            take(id, found);
             Ok(())
         },
-    )?;
-    observer.end(Stage::Verify);
-    Ok(())
+    )
 }
 
 /// Compares what a tile has with what the extract gives, one by one. `name` says what something is.

@@ -221,29 +221,23 @@ fn lay(
     }
     ids.sort_unstable_by_key(|&id| pmtiles_order(id));
     ids.dedup();
-    observer.begin(Stage::Tiles, Some(ids.len() as u64));
     let mut classes: BTreeMap<(u8, u8), ClassSums> = BTreeMap::new();
-    workers::in_order_unless_cancelled(
-        observer,
+    workers::side_by_side(
+        (observer, Stage::Tiles),
         threads,
-        ids.len(),
+        &ids,
         || Ok::<_, VerifyError>(()),
-        |(), index| {
-            let id = ids[index];
-            Ok(look_at(laying, id, &TilePieces::load(store, id)?))
-        },
-        |index, found: Found| {
+        |(), &id| Ok(look_at(laying, id, &TilePieces::load(store, id)?)),
+        |id, found: Found| {
             findings.merge(found.findings);
             fates.add(&found.fates)?;
-            ground_lines::put(&found.ground_lines, store, ids[index])?;
+            ground_lines::put(&found.ground_lines, store, *id)?;
             for (class, found) in found.classes {
-                classes.entry((ids[index].z(), class)).or_default().merge(&found);
+                classes.entry((id.z(), class)).or_default().merge(&found);
             }
-            observer.advance(Stage::Tiles, 1);
             Ok(())
         },
     )?;
-    observer.end(Stage::Tiles);
     Ok(classes)
 }
 

@@ -117,19 +117,16 @@ impl Comparison<'_> {
         let count = (0..=finest).map(|level| all(level).len() as u64).sum();
         observer.begin(Stage::Photos, Some(count));
         for level in (0..=finest).rev() {
-            let ids = all(level);
-            workers::in_order_unless_cancelled(
-                observer,
+            workers::advance(
+                (observer, Stage::Photos),
                 threads,
-                ids.len(),
+                &all(level),
                 || Ok::<_, VerifyError>(PhotoReader::new(self.photos)),
-                |reader, index| match ids[index] {
-                    id if level == finest => self.finest(reader, id),
-                    id => self.coarse(id),
+                |reader, &id| {
+                    if level == finest { self.finest(reader, id) } else { self.coarse(id) }
                 },
                 |_, found| {
                     findings.merge(found);
-                    observer.advance(Stage::Photos, 1);
                     Ok(())
                 },
             )?;

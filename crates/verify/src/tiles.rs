@@ -6,13 +6,12 @@ use corniche_geom::TileId;
 use corniche_roads::Structure;
 use corniche_spec::{Observer, levels::Levels};
 use corniche_tileset::{Manifest, SvTail, SvTails};
-use corniche_work::{Stage, workers};
 
 use super::{
     attributes::Ways,
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
-    each_tile::check_readable,
+    each_tile::each_tile,
     error::VerifyError,
     manifest_sums::{CUT_M, LENGTH_SHARE},
     one_tile::{Found, look_at},
@@ -33,7 +32,6 @@ pub(crate) fn verify(
     // `None` if the record is not valid; then the check `levels.derived` is broken.
     let levels = Levels::recorded(manifest);
     let ids = package.tile_ids()?;
-    observer.begin(Stage::Verify, Some(ids.len() as u64));
     let mut findings = Findings::default();
     let mut kept = BTreeMap::new();
     let mut gaps: BTreeMap<u8, GapFigures> = BTreeMap::new();
@@ -41,18 +39,12 @@ pub(crate) fn verify(
     let mut ways = Ways::default();
     let mut sums: BTreeMap<u8, TileSums> = BTreeMap::new();
     let mut sv_tails = SvTails::new();
-    workers::in_order_unless_cancelled(
-        observer,
+    each_tile(
+        package,
         threads,
-        ids.len(),
-        || Ok::<_, VerifyError>(()),
-        |(), index| {
-            let found = look_at(tiles, ids[index], levels.as_ref());
-            check_readable(package)?;
-            Ok(found)
-        },
-        |index, found: Found| {
-            let id = ids[index];
+        observer,
+        |id| Ok(look_at(tiles, id, levels.as_ref())),
+        |id, found: Found| {
             findings.look(CheckId::Whole, found.damage.is_none(), || {
                 found.damage.clone().unwrap_or_default()
             });
@@ -71,11 +63,8 @@ pub(crate) fn verify(
             sums.entry(id.z()).or_default().add(found.sums);
             sv_tails.add(id, found.sv_tail_bytes);
             kept.extend(found.kept.map(|tile| (id, tile)));
-            observer.advance(Stage::Verify, 1);
-            Ok(())
         },
     )?;
-    observer.end(Stage::Verify);
     let borders = check_seams(&kept, &mut findings);
     check_nesting(&kept, &mut findings);
     check_heights(manifest.vertical.range_m, &kept, &mut findings);

@@ -110,18 +110,17 @@ impl SpanSolving<'_> {
                 of_level = decks.on(&on_level(level)?);
                 &of_level
             };
-            workers::in_order_unless_cancelled(
-                observer,
+            workers::advance(
+                (observer, Stage::Spans),
                 self.threads,
-                tiles.len(),
-                || Ok(()),
-                |(), index| self.put_section((&network, decks), tiles[index]),
+                &tiles,
+                || Ok::<(), ExtractError>(()),
+                |(), &id| self.put_section((&network, decks), id),
                 |_, found| {
                     if level == finest {
                         within.extend(found);
                     }
-                    observer.advance(Stage::Spans, 1);
-                    Ok::<(), ExtractError>(())
+                    Ok(())
                 },
             )?;
         }
