@@ -8,6 +8,7 @@
 //! Roads are laid on the ground of each tile, so what is kept of them are pieces. The parts of other layers are encoded at once, as a section
 //! of their tile.
 
+pub(crate) mod blocks;
 pub mod defects;
 pub mod fixed_points;
 pub mod layer_totals;

@@ -1,13 +1,12 @@
 //! The areas of the extract: for each tile of each level, the section with what lies in it.
 
 use corniche_areas::{Area, AreaClass, AreaObject, OutlineError, Polygon};
-use corniche_geom::{LatticePoint, TileId};
+use corniche_geom::TileId;
 use corniche_osm::{AreaLoss, AreaSummary};
 use corniche_spec::{Defect, artifacts::damaged};
 use corniche_store::{Artifacts, Scratch};
-use corniche_tileset::{AreaRecord, AreaRings, encode_areas};
+use corniche_tileset::{AreaRecord, encode_areas};
 use corniche_work::Stage;
-use serde::{Deserialize, Serialize};
 
 use super::{sea::SeaPlace, split::AreaSplitting};
 use crate::{
@@ -63,9 +62,9 @@ impl TileSplitting for AreaSplitting<'_> {
 
     fn split_object(&self, number: u64, area: Area) -> SplitArea {
         let Area { object, class, area_m2, .. } = area;
-        let parts = self.split(&area).map(|parts| {
-            parts.into_iter().map(|(id, part)| (id, part_bytes(StoredArea::from(part)))).collect()
-        });
+        let parts = self
+            .split(&area)
+            .map(|parts| parts.into_iter().map(|(id, part)| (id, part_bytes(part))).collect());
         SplitArea { number, object, class, area_m2, parts }
     }
 }
@@ -118,12 +117,10 @@ impl<'a> TileLayer for AreaLayer<'a> {
         self.parts.for_each_tile(
             told.observer,
             |parts: &mut Vec<AreaRecord>, tile, _, bytes| {
-                let part =
-                    part_of_bytes(&bytes).and_then(StoredArea::into_record).ok_or_else(|| {
-                        let key = SectionLayer::Areas.section().item(tile);
-                        damaged(key, &"what was read back is no area")
-                    })?;
-                parts.push(part);
+                parts.push(part_of_bytes(&bytes).ok_or_else(|| {
+                    let key = SectionLayer::Areas.section().item(tile);
+                    damaged(key, &"what was read back is no area")
+                })?);
                 Ok(())
             },
             |tile, parts| put_section(tile, &parts, splitting, store),
@@ -139,39 +136,6 @@ impl<'a> TileLayer for AreaLayer<'a> {
         };
         totals.put(SectionLayer::Areas, store)?;
         Ok(totals)
-    }
-}
-
-/// An area of a tile, as it is kept while it is sorted.
-#[derive(Serialize, Deserialize)]
-struct StoredArea {
-    is_relation: bool,
-    id: i64,
-    class: u8,
-    name: String,
-    polygons: Vec<Vec<Vec<LatticePoint>>>,
-}
-
-impl From<AreaRecord> for StoredArea {
-    fn from(record: AreaRecord) -> Self {
-        let AreaRecord { object, class, name, polygons } = record;
-        let (kind, id) = object.parts();
-        Self {
-            is_relation: kind == "relation",
-            id,
-            class: class.number(),
-            name,
-            polygons: polygons.into_iter().map(|polygon| polygon.rings).collect(),
-        }
-    }
-}
-
-impl StoredArea {
-    fn into_record(self) -> Option<AreaRecord> {
-        let Self { is_relation, id, class, name, polygons } = self;
-        let polygons = polygons.into_iter().map(|rings| AreaRings { rings }).collect();
-        let object = if is_relation { AreaObject::Relation(id) } else { AreaObject::Way(id) };
-        Some(AreaRecord { object, class: AreaClass::from_number(class)?, name, polygons })
     }
 }
 

@@ -1,13 +1,11 @@
 //! Counts and lengths of roads for the manifest.
 
-use corniche_tileset::{Counts, LeftOutRecord, SampleCounts};
+use corniche_tileset::{Counts, SampleCounts};
 
-use super::{
-    losses::Sums,
-    totals::{LeftOutCount, RoadTotals},
-};
+use super::{losses::Sums, totals::RoadTotals};
 
 /// What came in, what was kept, what was lost and why: per road, then summed.
+#[must_use]
 pub fn road_counts(samples: SampleCounts, roads: &RoadTotals, losses: &Sums) -> Counts {
     let extract = &roads.extract;
     Counts {
@@ -21,16 +19,9 @@ pub fn road_counts(samples: SampleCounts, roads: &RoadTotals, losses: &Sums) -> 
         blobs_passed_over: extract.blobs_passed_over,
         highways_in: extract.highways_in,
         highways_left_out: extract.highways_left_out.clone(),
-        left_out: extract.left_out.iter().map(LeftOutRecord::from).collect(),
+        left_out: extract.left_out.clone(),
         roads_kept: losses.roads_kept,
         roads_kept_um: losses.roads_kept_um,
         roads_lost: losses.lost.clone(),
-    }
-}
-
-impl From<&LeftOutCount> for LeftOutRecord {
-    fn from(count: &LeftOutCount) -> Self {
-        let LeftOutCount { reason, highway, ways, length_um } = count.clone();
-        Self { reason, highway, ways, length_um }
     }
 }
