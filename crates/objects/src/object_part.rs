@@ -46,24 +46,11 @@ impl PartFile for ObjectPart {
         Ok(self.found.length)
     }
 
-    fn read_exact_at(&self, mut bytes: &mut [u8], mut offset: u64) -> Result<(), StoreError> {
+    fn read_exact_at(&self, bytes: &mut [u8], offset: u64) -> Result<(), StoreError> {
         self.check_inside(bytes.len(), offset)?;
         let Found { key, length, etag } = &self.found;
-        let block_bytes = self.blocks.block_bytes();
-        while !bytes.is_empty() {
-            let number = offset / block_bytes;
-            let from = number * block_bytes;
-            let block = self.blocks.get((self.number, number), 1, u64::MAX, |_| {
-                let range = from..length.min(&(from + block_bytes)).to_owned();
-                self.bucket.read(key, etag.as_deref(), range)
-            })?;
-            let inside = &block[(offset - from) as usize..];
-            let (now, later) = bytes.split_at_mut(inside.len().min(bytes.len()));
-            now.copy_from_slice(&inside[..now.len()]);
-            offset += now.len() as u64;
-            bytes = later;
-        }
-        Ok(())
+        let fetch = |range| self.bucket.read(key, etag.as_deref(), range);
+        Ok(self.blocks.read((self.number, *length), bytes, offset, fetch)?)
     }
 
     fn read_alone_at(&self, bytes: &mut [u8], offset: u64) -> Result<(), StoreError> {

@@ -63,33 +63,32 @@ impl SectionLayer {
         }
     }
 
+    /// What is told while its objects are split, and the artifacts that hold the section of a tile and the totals.
+    const fn row(self) -> (Stage, Kind, Kind) {
+        match self {
+            Self::Areas => (Stage::MapAreas, Kind::AreaSection, Kind::AreaTotals),
+            Self::Lines(ClassedLayer::Boundaries) => {
+                (Stage::Boundaries, Kind::BoundarySection, Kind::BoundaryTotals)
+            }
+            Self::Spans => (Stage::Spans, Kind::SpanSection, Kind::SpanTotals),
+        }
+    }
+
     /// What is told while its objects are split.
     pub(crate) fn stage(self) -> Stage {
-        match self {
-            Self::Areas => Stage::MapAreas,
-            Self::Lines(ClassedLayer::Boundaries) => Stage::Boundaries,
-            Self::Spans => Stage::Spans,
-        }
+        self.row().0
     }
 
     /// The artifact that holds the section of a tile.
     #[must_use]
     pub fn section(self) -> Kind {
-        match self {
-            Self::Areas => Kind::AreaSection,
-            Self::Lines(ClassedLayer::Boundaries) => Kind::BoundarySection,
-            Self::Spans => Kind::SpanSection,
-        }
+        self.row().1
     }
 
     /// The artifact that holds the totals.
     #[must_use]
     pub fn totals(self) -> Kind {
-        match self {
-            Self::Areas => Kind::AreaTotals,
-            Self::Lines(ClassedLayer::Boundaries) => Kind::BoundaryTotals,
-            Self::Spans => Kind::SpanTotals,
-        }
+        self.row().2
     }
 
     /// The section of a payload with these bytes, which were kept.

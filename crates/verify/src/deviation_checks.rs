@@ -130,11 +130,9 @@ fn agree(said: Option<Distribution>, found: Option<Distribution>) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= RATIO_ROUNDING * a.max(b);
     match (said, found) {
         (Some(said), Some(found)) => {
-            said.count == found.count
-                && near(said.min, found.min)
-                && near(said.median, found.median)
-                && near(said.p95, found.p95)
-                && near(said.max, found.max)
+            let figures = |of: Distribution| [of.min, of.median, of.p95, of.max];
+            let mut pairs = figures(said).into_iter().zip(figures(found));
+            said.count == found.count && pairs.all(|(said, found)| near(said, found))
         }
         (None, None) => true,
         (Some(_), None) | (None, Some(_)) => false,

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use corniche_dem::{Dem, DemWindow, GridPlan, Reader};
 use corniche_geom::{HeightGrid, NodeIndex, NodeWindow, TileId};
+use corniche_ground::heights::{finest::own_size, patch::union};
 use corniche_spec::{Observer, data_tiles::DataTiles};
 use corniche_tileset::{Manifest, SampleSums};
 use corniche_work::{Stage, workers};
@@ -33,10 +34,7 @@ impl TrueDeviation {
         self.nodes += other.nodes;
         self.uncovered += other.uncovered;
         self.stray += other.stray;
-        self.range_m = match (self.range_m, other.range_m) {
-            (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
-            (a, b) => a.or(b),
-        };
+        self.range_m = union(self.range_m, other.range_m);
     }
 }
 
@@ -149,10 +147,9 @@ fn compare(
 /// Whether a node of a finest tile's window is a sample, no filled void, that no other tile counts: those on the east and
 /// south border belong to the next tile, if there can be one.
 fn is_own_sample(id: TileId, read: &DemWindow, [column, row]: [usize; 2]) -> bool {
-    let (columns, rows) = (read.heights.columns(), read.heights.rows());
-    let last = (1_u32 << id.z()) - 1;
-    let is_own = (column + 1 < columns || id.x() == last) && (row + 1 < rows || id.y() == last);
-    is_own && read.is_filled.get(row * columns + column) != Some(&true)
+    let [columns, rows] = own_size(id);
+    let is_filled = read.is_filled.get(row * read.heights.columns() + column);
+    column < columns && row < rows && is_filled != Some(&true)
 }
 
 /// Whether a cell of a level lacks ground because one of its corners is void or beyond the data: then every node

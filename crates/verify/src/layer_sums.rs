@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
+use corniche_pieces::layers::tile_section::{SectionOfTile, SectionSums};
 use corniche_spec::Observer;
 use corniche_tileset::{FilePackage, LineLevelRecord};
 
@@ -16,44 +17,24 @@ use super::{
 #[derive(Default)]
 pub(crate) struct OfTile {
     pub(crate) findings: Findings,
-    pub counts: Counts,
+    pub counts: SectionOfTile,
 }
 
-/// How much of a layer there is.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Counts {
-    /// Tiles with some of it.
-    pub tiles: u64,
-    pub parts: u64,
-    pub points: u64,
-    /// Stored bytes.
-    pub bytes: u64,
-}
-
-impl Counts {
-    /// What is recorded of a layer of lines, or of spans, on a level.
-    pub(crate) fn recorded(of: &LineLevelRecord) -> (u8, Self) {
-        let &LineLevelRecord { level, tiles, parts, points, bytes } = of;
-        (level, Self { tiles, parts, points, bytes })
-    }
-
-    fn add(&mut self, of_tile: Self) {
-        self.tiles += of_tile.tiles;
-        self.parts += of_tile.parts;
-        self.points += of_tile.points;
-        self.bytes += of_tile.bytes;
-    }
+/// What is recorded of a layer of lines, or of spans, on a level.
+pub(crate) fn recorded(of: &LineLevelRecord) -> (u8, SectionSums) {
+    let &LineLevelRecord { level, tiles, parts, points, bytes } = of;
+    (level, SectionSums { tiles, parts, points, bytes })
 }
 
 /// Looks at the layer in each tile, and compares what all have with what is recorded by level.
 pub(crate) fn look_at_layer(
     (package, threads): (&FilePackage, usize),
     look_at: impl Fn(TileId) -> OfTile + Sync,
-    (check, recorded): (CheckId, Vec<(u8, Counts)>),
+    (check, recorded): (CheckId, Vec<(u8, SectionSums)>),
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let mut levels: BTreeMap<u8, Counts> = BTreeMap::new();
+    let mut levels: BTreeMap<u8, SectionSums> = BTreeMap::new();
     each_tile(
         package,
         threads,
@@ -62,11 +43,11 @@ pub(crate) fn look_at_layer(
         |id, found| {
             findings.merge(found.findings);
             if found.counts.parts > 0 {
-                levels.entry(id.z()).or_default().add(Counts { tiles: 1, ..found.counts });
+                levels.entry(id.z()).or_default().add(found.counts);
             }
         },
     )?;
-    let found: Vec<(u8, Counts)> = levels.into_iter().collect();
+    let found: Vec<(u8, SectionSums)> = levels.into_iter().collect();
     findings.look(check, found == recorded, || {
         format!("{found:?} in the tiles, {recorded:?} are recorded")
     });

@@ -19,6 +19,7 @@ use super::{
 };
 
 /// What a worker found in a tile.
+#[derive(Default)]
 pub(crate) struct Found {
     pub kept: Option<Kept>,
     pub(crate) findings: Findings,
@@ -30,32 +31,13 @@ pub(crate) struct Found {
     pub(crate) damage: Option<String>,
 }
 
-impl Found {
-    fn empty(id: TileId) -> Self {
-        Self {
-            kept: None,
-            findings: Findings::default(),
-            gaps: GapFigures { level: id.z(), ..GapFigures::default() },
-            lengths: RoadLengths::default(),
-            ways: Vec::new(),
-            sums: TileSums::default(),
-            sv_tail_bytes: 0,
-            damage: None,
-        }
-    }
-
-    fn damaged(id: TileId, damage: String) -> Self {
-        Self { damage: Some(damage), ..Self::empty(id) }
-    }
-}
-
 pub(crate) fn look_at(tiles: &DecodedTiles<'_>, id: TileId, levels: Option<&Levels>) -> Found {
     let manifest = tiles.package.manifest();
     let quantum_m = manifest.vertical.quantum_m;
     let tile = tiles.of(id);
     let (payload, sizes) = match &tile.whole {
         Ok(read) => read,
-        Err(damage) => return Found::damaged(id, damage.clone()),
+        Err(damage) => return Found { damage: Some(damage.clone()), ..Found::default() },
     };
     let mut findings = Findings::default();
     let least_class = manifest.levels.get(usize::from(id.z())).and_then(|level| level.least_class);
@@ -63,7 +45,7 @@ pub(crate) fn look_at(tiles: &DecodedTiles<'_>, id: TileId, levels: Option<&Leve
     roads_on_tin::verify_order(payload, &mut findings);
     let bounds = manifest.frame.tile_lattice_bounds(id);
     let sums = TileSums::of(payload, sizes, bounds);
-    let mut found = Found { ways, sums, sv_tail_bytes: sizes.sv_tail, ..Found::empty(id) };
+    let mut found = Found { ways, sums, sv_tail_bytes: sizes.sv_tail, ..Found::default() };
     let Some(terrain) = &payload.terrain else {
         let bare = payload.roads_geo.is_empty() && payload.roads_sv.is_empty();
         findings.look(CheckId::OnTin, bare, || format!("tile {id} has roads but no ground"));

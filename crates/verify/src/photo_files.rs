@@ -136,12 +136,8 @@ impl Comparison<'_> {
     }
 
     fn finest(&self, reader: &mut PhotoReader<'_>, id: TileId) -> Result<Findings, VerifyError> {
-        let levels = self.record.levels;
         let texels = reader.window(self.photos.texels().tile(id, PHOTO_BORDER))?;
-        let mut raster = texels.part([PHOTO_BORDER; 2], [rasters::SIDE << levels; 2]);
-        for _ in 0..levels {
-            raster = raster.halved();
-        }
+        let raster = rasters::of_texels(&texels, self.record.levels);
         rasters::put(&self.work.store, id, &raster)?;
         Ok(look_at(self.package, id, self.record, &texels))
     }

@@ -7,7 +7,7 @@ use corniche_store::Artifacts;
 use corniche_tileset::{PHOTO_BORDER, Photo, Section, encode_photo, photo_section};
 
 use super::{
-    rasters::{self, SIDE},
+    rasters,
     source::{OpenedPhotos, PhotoSource},
 };
 use crate::{GroundError, TerrainError, terrain::ground::GroundSource};
@@ -53,10 +53,7 @@ pub fn make_finest(
     }
     let texels = reader.window(photos.grid.texels().tile(id, PHOTO_BORDER))?;
     let levels = photos.levels();
-    let mut raster = texels.part([PHOTO_BORDER; 2], [SIDE << levels; 2]);
-    for _ in 0..levels {
-        raster = raster.halved();
-    }
+    let raster = rasters::of_texels(&texels, levels);
     match encode(id, levels, texels, photos.quality)? {
         Some(section) => store.put(key, section.bytes())?,
         None => return none(),

@@ -36,7 +36,8 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
         mut put: impl FnMut(u64, T) -> Result<(), ExtractError>,
     ) -> Result<(), ExtractError> {
         let mut put = |(tile, parts): (u64, T)| {
-            if observer.is_cancelled() { Err(ExtractError::Interrupted) } else { put(tile, parts) }
+            observer.check()?;
+            put(tile, parts)
         };
         let mut current: Option<(u64, T)> = None;
         for part in self.0.finish().map_err(ExtractError::Storage)? {

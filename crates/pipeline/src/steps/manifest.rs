@@ -14,8 +14,8 @@ use corniche_pieces::{
 use corniche_spec::{extent::Outline, manifest_texts, settings_record};
 use corniche_tileset::{
     AreaLevelRecord, AreasRecord, Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord,
-    LevelRecord, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord, SampleErrorRecord,
-    ScaleRecord, SpansRecord, VerticalRecord,
+    LevelRecord, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord, ScaleRecord,
+    SpansRecord, VerticalRecord,
 };
 
 use super::sums::TileSums;
@@ -43,12 +43,13 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
     let record = settings_record::of(
         &settings.terrain,
         &settings.roads,
-        outcome.context.max_error_m,
-        outcome.context.photo.record(),
+        outcome.context.opened.max_error_m,
+        outcome.context.opened.photo.record(),
         (settings.areas.as_ref(), &settings.lines),
     );
     let mut attribution = settings.attribution.clone();
-    for credit in outcome.context.photo.files().into_iter().flat_map(|photo| &photo.credits) {
+    for credit in outcome.context.opened.photo.files().into_iter().flat_map(|photo| &photo.credits)
+    {
         if !attribution.contains(credit) {
             attribution.push(credit.clone());
         }
@@ -85,7 +86,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
             range_m: outcome.heights.range_m.map(f64::from),
         },
         datum_operations: manifest_texts::datum_operations(&plan.datum_operations),
-        coordinates: outcome.context.coordinates.clone(),
+        coordinates: outcome.context.opened.coordinates.clone(),
         levels: level_records(outcome),
         settings_sha256: settings_record::sha256(&record),
         settings: record,
@@ -107,24 +108,16 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
     levels
         .numbers()
         .map(|level| {
-            let recorded = recorded.map(|terrain| &terrain.manifest().levels[usize::from(level)]);
             let sums = outcome.tiles.levels.get(&level).cloned().unwrap_or_default();
             let errors_m = Distribution::of(sums.geometric_errors_m);
-            let measured = Measured {
-                sample_error: outcome.tiles.samples[usize::from(level)].record(),
-                tightness: Distribution::of(sums.tightness),
-                uncovered_nodes: sums.uncovered_nodes,
-            };
-            // A package holds the figures of each level, but of the tiles not what they are made of.
-            let measured = recorded.map_or(measured, Measured::recorded);
-            LevelRecord {
+            let record = LevelRecord {
                 level,
                 cell_m: levels.frame().level_cell(level),
                 max_error_m: levels.max_error_m(level),
                 geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
                 errors_m,
-                sample_error: measured.sample_error,
-                tightness: measured.tightness,
+                sample_error: outcome.tiles.samples[usize::from(level)].record(),
+                tightness: Distribution::of(sums.tightness),
                 least_class: levels
                     .least_class(level)
                     .map(corniche_roads::FunctionalRoadClass::number),
@@ -135,24 +128,15 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 vertices: sums.vertices,
                 terrain_bytes: sums.terrain_bytes,
                 relief_bytes: sums.relief_bytes,
-                uncovered_nodes: measured.uncovered_nodes,
-            }
+                uncovered_nodes: sums.uncovered_nodes,
+            };
+            // A package holds the figures of each level that come of comparing its TINs with the heights, but of the tiles not what they are made of.
+            let Some(terrain) = recorded else { return record };
+            let &LevelRecord { sample_error, tightness, uncovered_nodes, .. } =
+                &terrain.manifest().levels[usize::from(level)];
+            LevelRecord { sample_error, tightness, uncovered_nodes, ..record }
         })
         .collect()
-}
-
-/// What is known of a level only by comparing its TINs with the heights.
-struct Measured {
-    sample_error: SampleErrorRecord,
-    tightness: Option<Distribution>,
-    uncovered_nodes: u64,
-}
-
-impl Measured {
-    fn recorded(level: &LevelRecord) -> Self {
-        let &LevelRecord { sample_error, tightness, uncovered_nodes, .. } = level;
-        Self { sample_error, tightness, uncovered_nodes }
-    }
 }
 
 /// Counts of roads: read, kept, and lost by reason.

@@ -109,7 +109,7 @@ pub(crate) fn make(
         return Err(BuildError::NoGround { osm: osm.clone(), what });
     }
     // All inputs have been read. If none has changed, the recorded hashes are those of the bytes that were used.
-    context.inputs.check_unchanged()?;
+    context.opened.inputs.check_unchanged()?;
     write(context, target, &manifest)?;
     Ok(manifest)
 }

@@ -69,7 +69,8 @@ fn solve(context: &Context<'_>) -> Result<SpanTotals, BuildError> {
             let dem = WholeDem { dem, plan: grid, levels, whole, threads, observer };
             let mut totals = solve(&dem)?;
             let places: Vec<LatticePoint> = totals.outer.iter().map(OuterGround::at).collect();
-            totals.inputs = context.inputs.hash_unused(&dem.needed_files(&places)?, observer)?;
+            totals.inputs =
+                context.opened.inputs.hash_unused(&dem.needed_files(&places)?, observer)?;
             Ok(totals)
         }
     }
