@@ -13,8 +13,8 @@ use corniche_tileset::{
 use super::{
     area_seams::{Beside, Seam},
     checks::{CheckId, Findings},
+    each_tile::{OfTile, check_totals, look_at_layer},
     error::VerifyError,
-    layer_sums::{OfTile, check_totals, look_at_layer},
 };
 
 pub(crate) fn verify(

@@ -6,12 +6,18 @@ use corniche_dem::{Dem, GridPlan, OpenDemError, OpenOptions};
 use corniche_spec::{
     Observer, data_outline::data_outline, inputs::Inputs, manifest_texts, settings_record,
 };
-use corniche_tileset::{InputKind, InputRecord, Manifest};
+use corniche_tileset::{InputKind, InputRecord, Manifest, SampleSums};
 
 use super::{
-    checks::{Check, CheckId, as_json},
+    checks::{Check, CheckId, Findings, as_json},
+    decoded_tiles::DecodedTiles,
+    deviations,
     error::VerifyError,
+    given_inputs::GivenFiles,
+    report::VerifyReport,
+    samples,
     verify_settings::VerifySettings,
+    vertices_against_dem,
 };
 
 /// Opens the DEM as the build did and makes sure that it is the same one. If its grid is not that of the package, a check
@@ -132,4 +138,39 @@ fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
         });
     }
     check
+}
+
+pub(crate) fn verify(
+    tiles: &DecodedTiles<'_>,
+    files: &GivenFiles<Option<(Dem, GridPlan)>>,
+    settings: &VerifySettings,
+    report: &mut VerifyReport,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let Some(opened) = &files.found else { return Ok(()) };
+    let compared = compare_all(tiles, opened, settings, report, observer);
+    VerifyError::unless_changed(&files.inputs, compared)
+}
+
+fn compare_all(
+    tiles: &DecodedTiles<'_>,
+    (dem, plan): &(Dem, GridPlan),
+    settings: &VerifySettings,
+    report: &mut VerifyReport,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let manifest = tiles.package.manifest();
+    let measured = deviations::measure(tiles, dem, plan, settings.threads, observer)?;
+    let at_samples = if plan.nodes_are_samples() {
+        measured.at_samples
+    } else {
+        samples::measure(tiles, dem, plan, settings, observer)?
+    };
+    let mut findings = Findings::default();
+    report.errors = deviations::verify(tiles, &measured.by_tile, &mut findings)?;
+    report.checks.extend(findings);
+    vertices_against_dem::verify(tiles, dem, plan, settings.threads, report, observer)?;
+    report.checks.extend(samples::judge(manifest, &at_samples));
+    report.samples = at_samples.last().map(SampleSums::record);
+    Ok(())
 }

@@ -13,7 +13,6 @@ use super::{
     checks::{Check, Findings},
     dem_inputs,
     error::VerifyError,
-    given_files::GivenFiles,
     osm, osm_layers, photo_files,
     verify_settings::VerifySettings,
 };
@@ -73,4 +72,11 @@ fn looked_at<T>(
     let found = look(&inputs);
     let found = VerifyError::unless_changed(&inputs, found)?;
     Ok(GivenFiles { inputs, found })
+}
+
+/// Files that are those of the build.
+pub(crate) struct GivenFiles<T> {
+    /// The files, to see at the end that they did not change.
+    pub inputs: Inputs,
+    pub found: T,
 }

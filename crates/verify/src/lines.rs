@@ -8,8 +8,8 @@ use corniche_tileset::{FilePackage, LineCounts, LineRecord, decode_lines, payloa
 
 use super::{
     checks::{CheckId, Findings},
+    each_tile::{OfTile, check_totals, look_at_layer, recorded},
     error::VerifyError,
-    layer_sums::{OfTile, check_totals, look_at_layer, recorded},
 };
 
 /// The checks of a layer.

@@ -10,12 +10,11 @@ use corniche_pieces::{
         reading_pool,
     },
     roads::{
-        counts::road_counts,
         ground_lines,
         lay::ClassSums,
         losses::{LossFold, Sums},
         pieces::TilePieces,
-        totals::RoadTotals,
+        totals::{RoadTotals, road_counts},
     },
     spans::{outer_ground::whole_rectangle, span_network::SpanInputs},
 };
@@ -37,7 +36,7 @@ use super::{
     decoded_tiles::DecodedTiles,
     error::VerifyError,
     georeference,
-    given_files::GivenFiles,
+    given_inputs::GivenFiles,
     grid, osm_layers,
     osm_tile::{Found, Laying, look_at},
     polygon_cut,

@@ -19,8 +19,8 @@ use corniche_tin::{Placement, Surface};
 use super::{
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
+    each_tile::{OfTile, look_at_layer, recorded},
     error::VerifyError,
-    layer_sums::{OfTile, look_at_layer, recorded},
     near_index::NearIndex,
     span_order::{self, OrderedCrossing, Piece},
     tile_place::TilePlace,

@@ -29,16 +29,16 @@ use corniche_work::Stage;
 use super::{kept::kept_in, no_road, placed_reading::PlacedReading};
 use crate::{
     ExtractError,
-    areas::{layer::AreaLayer, sea::SeaPlace, split::AreaSplitting},
+    areas::{
+        layer::{AreaLayer, AreaSplitting},
+        sea::SeaPlace,
+    },
     layers::{
         defects::{DefectsWriter, replay_defects},
         layer_writer::{LayerContext, LayerWriter},
         plan_splitting::PlanSplitting,
     },
-    lines::{
-        layer::{LinesLayer, MeasuredSplitting},
-        split::LineSplitting,
-    },
+    lines::layer::{LineSplitting, LinesLayer, MeasuredSplitting},
     roads::{
         layer::RoadLayer,
         split::RoadSplitting,

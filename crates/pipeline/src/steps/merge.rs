@@ -18,10 +18,8 @@ use corniche_work::Stage;
 
 use super::{
     hashes,
-    manifest::{self, Outcome},
-    roads, spans,
-    sums::TileSums,
-    top,
+    manifest::{self, Outcome, TileSums},
+    roads, spans, top,
 };
 use crate::{BuildError, context::Context, tile::record::TileRecord};
 
