@@ -11,7 +11,6 @@
 pub(crate) mod blocks;
 pub mod defects;
 pub mod fixed_points;
-pub mod layer_totals;
 pub(crate) mod layer_writer;
 pub(crate) mod parts_by_tile;
 pub(crate) mod plan_splitting;

@@ -14,6 +14,5 @@ pub(crate) mod photos;
 pub(crate) mod recorded_tiles;
 pub(crate) mod roads;
 pub(crate) mod shares;
-pub(crate) mod spans;
 pub(crate) mod tiles;
 pub(crate) mod top;

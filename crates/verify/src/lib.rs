@@ -14,10 +14,8 @@ mod error;
 mod geo_against_sv;
 mod georeference;
 mod given_inputs;
-mod grid;
 mod header;
 mod lines;
-mod manifest_sums;
 mod near_index;
 mod network;
 mod osm;
@@ -42,7 +40,6 @@ mod tile_sums;
 mod tiles;
 mod tin_against_parent;
 mod triangle_soup;
-mod verify_settings;
 mod vertices_against_dem;
 
 use corniche_areas::ClassedLayer;
@@ -56,10 +53,10 @@ pub use self::{
     checks::{Check, CheckId, Needs},
     elevation::RecordedElevation,
     error::VerifyError,
+    given_inputs::{VerifyOsm, VerifySettings},
     network::network,
     read_again::line_names,
     report::{ErrorFigures, GapFigures, VerifyReport},
-    verify_settings::{VerifyOsm, VerifySettings},
 };
 
 /// Verifies a package. Without other inputs it checks what the package says about itself; with the elevation files, the photos or
@@ -100,10 +97,10 @@ fn look_at_all(
         lines::verify(package, layer, settings.threads, &mut findings, observer)?;
     }
     spans::verify(&tiles, settings.threads, &mut findings, observer)?;
-    manifest_sums::verify(package.manifest(), &mut findings);
+    derived_records::verify_sums(package.manifest(), &mut findings);
     derived_records::verify(package.manifest(), &mut findings);
     header::verify(package, &mut findings)?;
-    grid::verify(package.manifest(), &mut findings);
+    derived_records::verify_grid(package.manifest(), &mut findings);
     georeference::verify(package.manifest(), &mut findings);
     if let Some(files) = &dem {
         given.push(Needs::Dem);

@@ -34,14 +34,15 @@ use corniche_work::{Silent, Stage, workers};
 use super::{
     checks::{CheckId, Findings, as_json},
     decoded_tiles::DecodedTiles,
+    derived_records,
     error::VerifyError,
     georeference,
     given_inputs::GivenFiles,
-    grid, osm_layers,
+    given_inputs::{VerifyOsm, VerifySettings},
+    osm_layers,
     osm_tile::{Found, Laying, look_at},
     polygon_cut,
     temporary_store::TemporaryStore,
-    verify_settings::{VerifyOsm, VerifySettings},
 };
 
 pub(crate) fn verify(
@@ -70,7 +71,7 @@ fn compare_all(
     // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads cannot be laid.
     let (Some(settings), Some([first, last])) = (
         settings_record::roads(&manifest.settings, chosen(&osm.table, manifest)),
-        grid::data_tiles(manifest),
+        derived_records::data_tiles(manifest),
     ) else {
         return Ok(());
     };
@@ -100,7 +101,7 @@ fn compare_all(
         lengths: &lengths,
         data_bounds: frame.tile_lattice_bounds(first).union(&frame.tile_lattice_bounds(last)),
         node_bounds: frame.lattice_bounds(manifest.data_nodes()),
-        clip: grid::clip_of(manifest),
+        clip: derived_records::clip_of(manifest),
         bounds_deg: manifest.settings.bounds_deg,
         outline: outline.as_ref(),
         area_deg: manifest.area_deg(),

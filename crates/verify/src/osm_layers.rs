@@ -6,8 +6,8 @@ use corniche_pieces::ExtractError;
 use corniche_pieces::{
     layers::{
         SectionLayer,
-        layer_totals::{AreaTotals, LineTotals},
         tile_section::TileSection,
+        tile_section::{AreaTotals, LineTotals},
     },
     roads::losses,
     spans::{solving::SpanSolving, span_network::SpanInputs},

@@ -24,8 +24,8 @@ use super::{
     error::VerifyError,
     georeference,
     given_inputs::GivenFiles,
+    given_inputs::VerifySettings,
     temporary_store::TemporaryStore,
-    verify_settings::VerifySettings,
 };
 
 pub(crate) fn verify(

@@ -16,10 +16,10 @@ use crate::{
     ExtractError,
     layers::{
         SectionLayer,
-        layer_totals::AreaTotals,
         layer_writer::{LayerContext, TileLayer, TileSplitting},
         parts_by_tile::{PartsByTile, part_bytes, part_of_bytes},
         plan_splitting::PlanSplitting,
+        tile_section::AreaTotals,
         tile_section::TileSection,
     },
 };

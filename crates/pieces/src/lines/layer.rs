@@ -19,10 +19,10 @@ use crate::{
     layers::{
         SectionLayer,
         fixed_points::fixed_of_part,
-        layer_totals::LineTotals,
         layer_writer::{LayerContext, TileLayer, TileSplitting},
         parts_by_tile::{PartsByTile, part_bytes, part_of_bytes},
         plan_splitting::PlanSplitting,
+        tile_section::LineTotals,
         tile_section::TileSection,
     },
 };

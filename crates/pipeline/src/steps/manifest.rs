@@ -8,7 +8,7 @@ use corniche_ground::heights::pyramid::HeightSums;
 use corniche_pieces::{
     layers::{
         ByLayer, SectionLayer,
-        layer_totals::{AreaTotals, LineTotals},
+        tile_section::{AreaTotals, LineTotals},
         tile_section::{SectionOfTile, SectionSums},
     },
     roads::{
