@@ -293,6 +293,10 @@ impl Bucket {
         (Attribute::Metadata(WRITER.into()), value.to_owned().into())
     }
 
+    pub(crate) fn missing(&self, key: &str) -> ObjectError {
+        ObjectError::Missing { name: self.address(key).to_string() }
+    }
+
     fn short(&self, key: &str, got: usize, wanted: u64) -> ObjectError {
         ObjectError::Short { name: self.address(key).to_string(), got: got as u64, wanted }
     }

@@ -141,10 +141,9 @@ impl PartsPlace for ObjectPlace {
         let listed = listed.get(file_name).cloned();
         let found = match listed {
             Some(found) => found,
-            None => self.find_part(file_name)?.ok_or_else(|| {
-                let address = self.bucket.address(&format!("{}/{file_name}", self.parts_key()));
-                ObjectError::Missing { name: address.to_string() }
-            })?,
+            None => self
+                .find_part(file_name)?
+                .ok_or_else(|| self.bucket.missing(&format!("{}/{file_name}", self.parts_key())))?,
         };
         Ok(Box::new(ObjectPart::new(self.bucket.clone(), found, Arc::clone(&self.blocks))))
     }
@@ -165,17 +164,14 @@ impl Publish for ObjectPlace {
             }
         } else {
             // Someone else came first, now or before, and was perhaps killed before the header.
-            let missing = || ObjectError::Missing { name: self.bucket.address(&key).to_string() };
-            let bytes = self.bucket.get(&key)?.ok_or_else(missing)?;
+            let bytes = self.bucket.get(&key)?.ok_or_else(|| self.bucket.missing(&key))?;
             if bytes != plan.bytes {
                 return Ok(StoredPlan { hash: [0; 32], bytes });
             }
         }
-        self.bucket.create(&self.address.beneath(STORE_NAME), store_header(plan))?;
-        let bound = self.stored_plan()?;
-        bound.ok_or_else(|| {
-            ObjectError::Missing { name: self.header_path().display().to_string() }.into()
-        })
+        let header = self.address.beneath(STORE_NAME);
+        self.bucket.create(&header, store_header(plan))?;
+        self.stored_plan()?.ok_or_else(|| self.bucket.missing(&header).into())
     }
 
     fn publish(

@@ -39,28 +39,10 @@ pub(crate) fn open(
     terrain.plan.polygon.clone_from(&settings.polygon);
     let dem = open_as_recorded(&settings.dem, &terrain.open)?;
     let given = inputs.hash(observer)?;
-    // Files are compared by content, not by name: a file may have been moved or renamed. Parts are sorted by their hash,
-    // because their recorded order is that of their names.
     let mut sizes = Check::new(CheckId::DemInputs);
-    for kind in [InputKind::Dem, InputKind::DemPart] {
-        let of_kind = |records: &mut dyn Iterator<Item = &InputRecord>| {
-            let mut found: Vec<InputRecord> =
-                records.filter(|record| kind.is_of(record)).cloned().collect();
-            if kind == InputKind::DemPart {
-                found.sort_by(|a, b| a.sha256.cmp(&b.sha256));
-            }
-            found
-        };
-        let (said, found) = (of_kind(&mut expected.iter().copied()), of_kind(&mut given.iter()));
-        if !are_same(&said, &found) {
-            return Err(other());
-        }
-        let pairs = said.iter().zip(&found).filter(|(said, found)| said.sha256 == found.sha256);
-        for (said, found) in pairs {
-            sizes.look(said.bytes == found.bytes, || {
-                format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
-            });
-        }
+    let kinds = [InputKind::Dem, InputKind::DemPart];
+    if !are_recorded(kinds, &manifest.inputs, &given, are_same, &mut sizes) {
+        return Err(other());
     }
     checks.push(sizes);
     let plan = dem.plan(&terrain.plan)?;
@@ -83,6 +65,38 @@ fn open_as_recorded(files: &[PathBuf], options: &OpenOptions) -> Result<Dem, Ope
         }
         opened => opened,
     }
+}
+
+/// Whether the given files of two kinds are those that are recorded, by `are_same`, and whether these are as long as recorded.
+///
+/// Files are compared by content, not by name: a file may have been moved or renamed. Parts, the second kind, are sorted by their hash, because their
+/// recorded order is that of their names.
+pub(crate) fn are_recorded(
+    kinds: [InputKind; 2],
+    recorded: &[InputRecord],
+    given: &[InputRecord],
+    are_same: impl Fn(&[InputRecord], &[InputRecord]) -> bool,
+    sizes: &mut Check,
+) -> bool {
+    kinds.iter().all(|kind| {
+        let of_kind = |records: &[InputRecord]| {
+            let of_kind = records.iter().filter(|record| kind.is_of(record));
+            let mut of_kind: Vec<InputRecord> = of_kind.cloned().collect();
+            if *kind == kinds[1] {
+                of_kind.sort_by(|a, b| a.sha256.cmp(&b.sha256));
+            }
+            of_kind
+        };
+        let (said, found) = (of_kind(recorded), of_kind(given));
+        let is_same = are_same(&said, &found);
+        let pairs = said.iter().zip(&found).filter(|(said, found)| said.sha256 == found.sha256);
+        for (said, found) in pairs.filter(|_| is_same) {
+            sizes.look(said.bytes == found.bytes, || {
+                format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
+            });
+        }
+        is_same
+    })
 }
 
 /// Whether files are those that are recorded, by their content. Of files that were not used, outside the bounds of the package, there is no

@@ -99,7 +99,6 @@ fn compare_all(
         projection: &projection,
         levels: &levels,
         lengths: &lengths,
-        data_bounds: frame.tile_lattice_bounds(first).union(&frame.tile_lattice_bounds(last)),
         node_bounds: frame.lattice_bounds(manifest.data_nodes()),
         clip: derived_records::clip_of(manifest),
         bounds_deg: manifest.settings.bounds_deg,

@@ -20,7 +20,8 @@ use corniche_tileset::{
 use corniche_work::{Stage, workers};
 
 use super::{
-    checks::{CheckId, Findings},
+    checks::{Check, CheckId, Findings},
+    dem_inputs::are_recorded,
     error::VerifyError,
     georeference,
     given_inputs::GivenFiles,
@@ -70,29 +71,17 @@ pub(crate) fn check_inputs(
     if manifest.settings.photo.is_none() {
         return Err(VerifyError::NoPhotos);
     }
-    for kind in [InputKind::Photo, InputKind::PhotoPart] {
-        let of_kind = |records: &[InputRecord]| {
-            let records = records.iter().filter(|record| kind.is_of(record));
-            let mut records: Vec<InputRecord> = records.cloned().collect();
-            if kind == InputKind::PhotoPart {
-                records.sort_by(|a, b| a.sha256.cmp(&b.sha256));
-            }
-            records
-        };
-        let (said, found) = (of_kind(&manifest.inputs), of_kind(given));
-        let is_same = said.len() == found.len()
-            && said.iter().zip(&found).all(|(said, found)| said.sha256 == found.sha256);
-        if !is_same {
-            let photos = manifest.inputs.iter().filter(|input| InputKind::Photo.is_of(input));
-            let expected = photos.map(|input| input.name.clone()).collect();
-            return Err(VerifyError::OtherPhotos { paths: paths.to_vec(), expected });
-        }
-        for (said, found) in said.iter().zip(&found) {
-            findings.look(CheckId::PhotoInputs, said.bytes == found.bytes, || {
-                format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
-            });
-        }
+    let are_same = |said: &[InputRecord], found: &[InputRecord]| {
+        said.iter().map(|of| &of.sha256).eq(found.iter().map(|of| &of.sha256))
+    };
+    let kinds = [InputKind::Photo, InputKind::PhotoPart];
+    let mut sizes = Check::new(CheckId::PhotoInputs);
+    if !are_recorded(kinds, &manifest.inputs, given, are_same, &mut sizes) {
+        let photos = manifest.inputs.iter().filter(|input| InputKind::Photo.is_of(input));
+        let expected = photos.map(|input| input.name.clone()).collect();
+        return Err(VerifyError::OtherPhotos { paths: paths.to_vec(), expected });
     }
+    findings.merge([sizes]);
     Ok(())
 }
 

@@ -67,8 +67,6 @@ pub struct ExtractInput<'a> {
     pub levels: &'a Levels,
     /// How roads are measured.
     pub lengths: &'a TrueLengths<'a>,
-    /// The finest tiles on which the data's rectangle lies, all together.
-    pub data_bounds: LatticeBounds,
     /// The data's rectangle: that of all nodes at which data can lie.
     pub node_bounds: LatticeBounds,
     /// The bounds that were asked for.
@@ -239,7 +237,7 @@ fn road_layer<'a>(
     let splitting = RoadSplitting {
         levels: input.levels,
         lengths: input.lengths,
-        data_bounds: input.data_bounds,
+        data_bounds: input.data.bounds(input.levels.frame()),
         node_bounds: input.node_bounds,
         clip: input.clip,
         polygon: input.polygon,

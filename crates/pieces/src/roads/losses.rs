@@ -10,7 +10,10 @@ use super::{
     lay::RoadFate,
     totals::{BLOCK_ROADS, RoadLength, RoadTotals, lengths_of_block},
 };
-use crate::ExtractError;
+use crate::{
+    ExtractError,
+    layers::parts_by_tile::{append, take},
+};
 
 /// A road's true length at the finest level, micrometres, by what became of it; each part measured by itself.
 #[expect(clippy::struct_field_names, reason = "the unit is part of every name")]
@@ -135,21 +138,12 @@ struct FateRecord {
 
 impl SortRecord for FateRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        bytes.extend(self.ordinal.to_le_bytes());
-        bytes.extend(self.fate.kept_um.to_le_bytes());
-        bytes.extend(self.fate.void_um.to_le_bytes());
+        append(bytes, (self.ordinal, self.fate));
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let (ordinal, rest) = bytes.split_first_chunk()?;
-        let (kept_um, rest) = rest.split_first_chunk()?;
-        let (void_um, rest) = rest.split_first_chunk()?;
-        *bytes = rest;
-        let fate = RoadFate {
-            kept_um: u64::from_le_bytes(*kept_um),
-            void_um: u64::from_le_bytes(*void_um),
-        };
-        Some(Self { ordinal: u32::from_le_bytes(*ordinal), fate })
+        let (ordinal, fate) = take(bytes)?;
+        Some(Self { ordinal, fate })
     }
 }
 

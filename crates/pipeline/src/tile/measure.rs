@@ -95,7 +95,7 @@ impl Column {
                     stride: frame.stride(level),
                 };
                 let found = corniche_tin::measure(&ground.buckets, &window, placement, look);
-                Seen::of(found, range_m, uncovered_nodes)
+                Seen { max_abs_m: found.max_abs_m, range_m, uncovered_nodes }
             } else {
                 for row in 0..window.rows() {
                     for column in 0..window.columns() {
