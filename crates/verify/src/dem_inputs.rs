@@ -13,10 +13,11 @@ use super::{
     decoded_tiles::DecodedTiles,
     deviations,
     error::VerifyError,
-    given_inputs::GivenFiles,
-    given_inputs::VerifySettings,
     report::VerifyReport,
-    samples, vertices_against_dem,
+    samples,
+    verify_settings::GivenFiles,
+    verify_settings::VerifySettings,
+    vertices_against_dem,
 };
 
 /// Opens the DEM as the build did and makes sure that it is the same one. If its grid is not that of the package, a check

@@ -10,7 +10,9 @@ use corniche_spec::{
 };
 use corniche_tileset::FilePackage;
 
-use super::{checks::Check, dem_inputs, error::VerifyError, given_inputs::VerifySettings, polygon};
+use super::{
+    checks::Check, dem_inputs, error::VerifyError, polygon, verify_settings::VerifySettings,
+};
 
 /// The elevation files that a package was made from, opened as its build did.
 #[derive(Debug)]

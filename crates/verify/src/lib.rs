@@ -40,6 +40,7 @@ mod tile_sums;
 mod tiles;
 mod tin_against_parent;
 mod triangle_soup;
+mod verify_settings;
 mod vertices_against_dem;
 
 use corniche_areas::ClassedLayer;
@@ -53,10 +54,10 @@ pub use self::{
     checks::{Check, CheckId, Needs},
     elevation::RecordedElevation,
     error::VerifyError,
-    given_inputs::{VerifyOsm, VerifySettings},
     network::network,
     read_again::line_names,
     report::{ErrorFigures, GapFigures, VerifyReport},
+    verify_settings::{VerifyOsm, VerifySettings},
 };
 
 /// Verifies a package. Without other inputs it checks what the package says about itself; with the elevation files, the photos or

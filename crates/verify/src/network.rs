@@ -21,8 +21,8 @@ use corniche_store::MemoryStore;
 use corniche_tileset::FilePackage;
 
 use super::{
-    error::VerifyError, given_inputs::VerifyOsm, read_again::read_again,
-    temporary_store::TemporaryStore,
+    error::VerifyError, read_again::read_again, temporary_store::TemporaryStore,
+    verify_settings::VerifyOsm,
 };
 
 /// Roads are read as far as this around the data, true metres: what lies farther away has no part in how a road is smoothed.

@@ -12,9 +12,9 @@ use corniche_pieces::{
     roads::{
         ground_lines,
         lay::ClassSums,
-        losses::{LossFold, Sums},
+        losses::{LossFold, Sums, road_counts},
         pieces::TilePieces,
-        totals::{RoadTotals, road_counts},
+        totals::RoadTotals,
     },
     spans::{outer_ground::whole_rectangle, span_network::SpanInputs},
 };
@@ -36,13 +36,12 @@ use super::{
     decoded_tiles::DecodedTiles,
     derived_records,
     error::VerifyError,
-    georeference,
-    given_inputs::GivenFiles,
-    given_inputs::{VerifyOsm, VerifySettings},
-    osm_layers,
+    georeference, osm_layers,
     osm_tile::{Found, Laying, look_at},
     polygon_cut,
     temporary_store::TemporaryStore,
+    verify_settings::GivenFiles,
+    verify_settings::{VerifyOsm, VerifySettings},
 };
 
 pub(crate) fn verify(

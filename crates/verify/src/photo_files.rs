@@ -24,9 +24,9 @@ use super::{
     dem_inputs::are_recorded,
     error::VerifyError,
     georeference,
-    given_inputs::GivenFiles,
-    given_inputs::VerifySettings,
     temporary_store::TemporaryStore,
+    verify_settings::GivenFiles,
+    verify_settings::VerifySettings,
 };
 
 pub(crate) fn verify(

@@ -11,8 +11,8 @@ use corniche_tileset::FilePackage;
 use corniche_work::Stage;
 
 use super::{
-    checks::Findings, error::VerifyError, georeference, given_inputs::VerifyOsm, osm,
-    temporary_store::TemporaryStore,
+    checks::Findings, error::VerifyError, georeference, osm, temporary_store::TemporaryStore,
+    verify_settings::VerifyOsm,
 };
 
 /// Hands out layers of the extracts, with points on the package's lattice; roads come with the ids of their nodes.

@@ -12,8 +12,8 @@ use super::{
     checks::{Check, CheckId, as_json},
     decoded_tiles::DecodedTiles,
     error::VerifyError,
-    given_inputs::VerifySettings,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
+    verify_settings::VerifySettings,
 };
 
 /// Empty sums for every level, root first.

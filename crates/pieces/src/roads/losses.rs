@@ -4,7 +4,7 @@ use corniche_roads::Structure;
 use corniche_spec::artifacts::ArtifactError;
 use corniche_spec::{Defect, Loss, Observer, true_lengths::UM};
 use corniche_store::{Artifacts, Scratch, SortRecord, Sorted, Sorter};
-use corniche_tileset::RoadLoss;
+use corniche_tileset::{Counts, RoadLoss, SampleCounts};
 
 use super::{
     lay::RoadFate,
@@ -66,6 +66,28 @@ pub struct Sums {
     pub(crate) lost: Vec<RoadLoss>,
     /// The same where only what lies outside the data's tiles is outside the data, as packages of before have it.
     pub lost_by_tiles: Vec<RoadLoss>,
+}
+
+/// What came in, what was kept, what was lost and why: per road, then summed.
+#[must_use]
+pub fn road_counts(samples: SampleCounts, roads: &RoadTotals, losses: &Sums) -> Counts {
+    let extract = &roads.extract;
+    Counts {
+        samples,
+        roads_in: roads.roads,
+        roads_in_um: roads.length_um,
+        classes: roads.classes.clone(),
+        defects: roads.defects.iter().map(|(name, &count)| (name.clone(), count)).collect(),
+        unknown_highways: extract.unknown_highways.clone(),
+        tags_taken_otherwise: extract.tags_taken_otherwise.clone(),
+        blobs_passed_over: extract.blobs_passed_over,
+        highways_in: extract.highways_in,
+        highways_left_out: extract.highways_left_out.clone(),
+        left_out: extract.left_out.clone(),
+        roads_kept: losses.roads_kept,
+        roads_kept_um: losses.roads_kept_um,
+        roads_lost: losses.lost.clone(),
+    }
 }
 
 /// Adds up what became of each road in all tiles. It takes no more memory than it is given, however many roads there are.

@@ -7,10 +7,9 @@ use corniche_osm::{ExtractSummary, LeftOut, LeftOutReason, LeftOutWays};
 use corniche_roads::{LossReason, Structure};
 use corniche_spec::artifacts::{self, Kind};
 use corniche_store::Artifacts;
-use corniche_tileset::{Counts, LeftOutRecord, SampleCounts};
+use corniche_tileset::LeftOutRecord;
 use serde::{Deserialize, Serialize};
 
-use super::losses::Sums;
 use crate::{
     ExtractError,
     layers::blocks::{BlockWriter, block},
@@ -133,28 +132,6 @@ pub(crate) fn lengths_of_block(
         return Err(artifacts::damaged(Kind::RoadLengths.item(number), &what).into());
     }
     Ok(lengths)
-}
-
-/// What came in, what was kept, what was lost and why: per road, then summed.
-#[must_use]
-pub fn road_counts(samples: SampleCounts, roads: &RoadTotals, losses: &Sums) -> Counts {
-    let extract = &roads.extract;
-    Counts {
-        samples,
-        roads_in: roads.roads,
-        roads_in_um: roads.length_um,
-        classes: roads.classes.clone(),
-        defects: roads.defects.iter().map(|(name, &count)| (name.clone(), count)).collect(),
-        unknown_highways: extract.unknown_highways.clone(),
-        tags_taken_otherwise: extract.tags_taken_otherwise.clone(),
-        blobs_passed_over: extract.blobs_passed_over,
-        highways_in: extract.highways_in,
-        highways_left_out: extract.highways_left_out.clone(),
-        left_out: extract.left_out.clone(),
-        roads_kept: losses.roads_kept,
-        roads_kept_um: losses.roads_kept_um,
-        roads_lost: losses.lost.clone(),
-    }
 }
 
 #[cfg(test)]

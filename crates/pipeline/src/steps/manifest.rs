@@ -13,8 +13,8 @@ use corniche_pieces::{
     },
     roads::{
         lay::ClassSums,
-        losses,
-        totals::{RoadTotals, road_counts},
+        losses::{self, road_counts},
+        totals::RoadTotals,
     },
     spans::totals::SpanTotals,
 };
