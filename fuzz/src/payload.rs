@@ -48,7 +48,7 @@ fn spans_come_back(bytes: &[u8], id: TileId, context: &PayloadContext) {
         Ok(section) => section,
         Err(error) => panic!("spans that were decoded cannot be encoded: {error}"),
     };
-    let again = section.map(|section| section.decode(id, &context.frame));
+    let again = section.map(|section| section.spans(id, &context.frame));
     assert_eq!(again.unwrap_or(Ok(Vec::new())), Ok(runs), "other spans came back");
 }
 

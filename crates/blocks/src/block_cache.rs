@@ -114,6 +114,34 @@ impl BlockCache {
         Ok(first)
     }
 
+    /// Fills `bytes` with those at a place of a file of `length` bytes, which has all of them. `fetch` gets runs of bytes of whole blocks.
+    ///
+    /// # Errors
+    /// What `fetch` returns.
+    pub fn read<E>(
+        &self,
+        (file, length): (u64, u64),
+        mut bytes: &mut [u8],
+        mut offset: u64,
+        fetch: impl Fn(Range<u64>) -> Result<Bytes, E>,
+    ) -> Result<(), E> {
+        let block_bytes = self.limits.block_bytes;
+        let count = length.div_ceil(block_bytes);
+        while !bytes.is_empty() {
+            let number = offset / block_bytes;
+            let wanted = (offset + bytes.len() as u64).div_ceil(block_bytes) - number;
+            let block = self.get((file, number), wanted, count, |run| {
+                fetch(run.start * block_bytes..length.min(run.end * block_bytes))
+            })?;
+            let inside = &block[(offset - number * block_bytes) as usize..];
+            let (now, later) = bytes.split_at_mut(inside.len().min(bytes.len()));
+            now.copy_from_slice(&inside[..now.len()]);
+            offset += now.len() as u64;
+            bytes = later;
+        }
+        Ok(())
+    }
+
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -32,7 +32,7 @@ fn json_lines_are_rare_while_nothing_moves() {
 fn the_page_names_every_stage_and_every_unit() {
     let page = std::fs::read_to_string(corniche_testing::root().join("docs/progress.md")).unwrap();
     let row = |start: &str| page.lines().find(|line| line.starts_with(start)).unwrap();
-    for stage in Stage::ALL {
+    for &stage in Stage::ALL {
         assert!(row("| `stage` |").contains(&format!("`{}`", stage.id())), "{stage:?}");
         let unit = stage.unit().plural();
         assert!(row("| `unit` |").contains(&format!("`{unit}`")), "{unit}");

@@ -132,8 +132,7 @@ impl Bucket {
     /// # Errors
     /// See [`ObjectError`].
     pub fn list(&self, prefix: &str) -> Result<(Vec<Found>, Vec<String>), ObjectError> {
-        let failed = |error| self.explain(prefix, "list", error);
-        let path = Self::path(prefix).map_err(failed)?;
+        let (path, failed) = self.object(prefix, "list")?;
         let prefix = if prefix.is_empty() { String::new() } else { format!("{path}/") };
         let (mut found, mut folders) = (BTreeMap::new(), BTreeSet::new());
         let begun = Instant::now();
@@ -186,8 +185,7 @@ impl Bucket {
 
     /// The same, and who wrote it.
     pub(crate) fn look(&self, key: &str) -> Result<Option<(Found, Option<String>)>, ObjectError> {
-        let failed = |error| self.explain(key, "look for", error);
-        let path = Self::path(key).map_err(failed)?;
+        let (path, failed) = self.object(key, "look for")?;
         let options = GetOptions { head: true, ..GetOptions::default() };
         match self.runtime.block_on(self.keeping.get_opts(&path, options)) {
             Err(Error::NotFound { .. }) => Ok(None),
@@ -206,8 +204,7 @@ impl Bucket {
     /// # Errors
     /// See [`ObjectError`].
     pub fn get(&self, key: &str) -> Result<Option<Vec<u8>>, ObjectError> {
-        let failed = |error| self.explain(key, "read", error);
-        let path = Self::path(key).map_err(failed)?;
+        let (path, failed) = self.object(key, "read")?;
         let got = self.runtime.block_on(async {
             let got = self.keeping.get_opts(&path, GetOptions::default()).await?;
             let wanted = got.meta.size;
@@ -237,8 +234,7 @@ impl Bucket {
         if wanted == 0 {
             return Ok(Bytes::new());
         }
-        let failed = |error| self.explain(key, "read", error);
-        let path = Self::path(key).map_err(failed)?;
+        let (path, failed) = self.object(key, "read")?;
         let mut got = 0;
         for pause in 0..TRIES {
             if pause > 0 {
@@ -274,8 +270,7 @@ impl Bucket {
     /// # Errors
     /// See [`ObjectError`].
     pub fn create(&self, key: &str, bytes: Vec<u8>) -> Result<bool, ObjectError> {
-        let failed = |error| self.explain(key, "write", error);
-        let path = Self::path(key).map_err(failed)?;
+        let (path, failed) = self.object(key, "write")?;
         let options = PutOptions::from(PutMode::Create);
         match self.runtime.block_on(self.keeping.put_opts(&path, bytes.into(), options)) {
             Ok(_) => Ok(true),
@@ -284,12 +279,22 @@ impl Bucket {
         }
     }
 
-    pub(crate) fn path(key: &str) -> Result<Key, Error> {
-        Ok(Key::parse(key)?)
+    /// The name of an object as the library has it, and what its errors mean for what is done.
+    pub(crate) fn object<'a>(
+        &'a self,
+        key: &'a str,
+        doing: &'static str,
+    ) -> Result<(Key, impl Fn(Error) -> ObjectError + Copy + 'a), ObjectError> {
+        let explain = move |error| self.explain(key, doing, error);
+        Ok((Key::parse(key).map_err(|error| explain(error.into()))?, explain))
     }
 
     pub(crate) fn writer(value: &str) -> (Attribute, AttributeValue) {
         (Attribute::Metadata(WRITER.into()), value.to_owned().into())
+    }
+
+    pub(crate) fn missing(&self, key: &str) -> ObjectError {
+        ObjectError::Missing { name: self.address(key).to_string() }
     }
 
     fn short(&self, key: &str, got: usize, wanted: u64) -> ObjectError {

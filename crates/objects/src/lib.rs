@@ -17,7 +17,6 @@
 mod address;
 mod bucket;
 mod error;
-mod object_part;
 mod object_place;
 mod reader;
 mod settings;

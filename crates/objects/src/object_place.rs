@@ -21,7 +21,7 @@ use corniche_store::{
     StoredPlan, check_sealed, part_of_sealed, plan_of_header, store_header,
 };
 
-use crate::{Bucket, Found, ObjectAddress, ObjectError, Storage, Upload, object_part::ObjectPart};
+use crate::{Bucket, Found, ObjectAddress, ObjectError, Storage, Upload};
 
 /// Blocks are no larger: an answer takes longer then, and more of it is never looked at.
 const LARGEST_BLOCK_BYTES: u64 = 4 << 20;
@@ -141,10 +141,9 @@ impl PartsPlace for ObjectPlace {
         let listed = listed.get(file_name).cloned();
         let found = match listed {
             Some(found) => found,
-            None => self.find_part(file_name)?.ok_or_else(|| {
-                let address = self.bucket.address(&format!("{}/{file_name}", self.parts_key()));
-                ObjectError::Missing { name: address.to_string() }
-            })?,
+            None => self
+                .find_part(file_name)?
+                .ok_or_else(|| self.bucket.missing(&format!("{}/{file_name}", self.parts_key())))?,
         };
         Ok(Box::new(ObjectPart::new(self.bucket.clone(), found, Arc::clone(&self.blocks))))
     }
@@ -165,17 +164,14 @@ impl Publish for ObjectPlace {
             }
         } else {
             // Someone else came first, now or before, and was perhaps killed before the header.
-            let missing = || ObjectError::Missing { name: self.bucket.address(&key).to_string() };
-            let bytes = self.bucket.get(&key)?.ok_or_else(missing)?;
+            let bytes = self.bucket.get(&key)?.ok_or_else(|| self.bucket.missing(&key))?;
             if bytes != plan.bytes {
                 return Ok(StoredPlan { hash: [0; 32], bytes });
             }
         }
-        self.bucket.create(&self.address.beneath(STORE_NAME), store_header(plan))?;
-        let bound = self.stored_plan()?;
-        bound.ok_or_else(|| {
-            ObjectError::Missing { name: self.header_path().display().to_string() }.into()
-        })
+        let header = self.address.beneath(STORE_NAME);
+        self.bucket.create(&header, store_header(plan))?;
+        self.stored_plan()?.ok_or_else(|| self.bucket.missing(&header).into())
     }
 
     fn publish(
@@ -202,5 +198,58 @@ impl Publish for ObjectPlace {
             self.stored_plan()?.ok_or_else(|| StoreError::NoStore { path: self.name.clone() })?;
         check_sealed(&*self.open(name)?, &plan.hash)?;
         Ok(address)
+    }
+}
+
+/// A sealed part that is an object.
+#[derive(Debug)]
+pub(crate) struct ObjectPart {
+    bucket: Bucket,
+    found: Found,
+    /// Its address, where others have a path.
+    path: PathBuf,
+    blocks: Arc<BlockCache>,
+    number: u64,
+}
+
+impl ObjectPart {
+    pub(crate) fn new(bucket: Bucket, found: Found, blocks: Arc<BlockCache>) -> Self {
+        let path = bucket.address(&found.key).to_string().into();
+        let number = blocks.new_file();
+        Self { bucket, found, path, blocks, number }
+    }
+
+    /// Fails where bytes are asked for that it does not have: someone replaced it, or its list is wrong.
+    fn check_inside(&self, length: usize, offset: u64) -> Result<(), StoreError> {
+        if offset.checked_add(length as u64).is_some_and(|end| end <= self.found.length) {
+            return Ok(());
+        }
+        let what = format!("bytes beyond its {} are wanted", self.found.length);
+        Err(StoreError::Damaged { path: self.path.clone(), what })
+    }
+}
+
+impl PartFile for ObjectPart {
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn length(&self) -> Result<u64, StoreError> {
+        Ok(self.found.length)
+    }
+
+    fn read_exact_at(&self, bytes: &mut [u8], offset: u64) -> Result<(), StoreError> {
+        self.check_inside(bytes.len(), offset)?;
+        let Found { key, length, etag } = &self.found;
+        let fetch = |range| self.bucket.read(key, etag.as_deref(), range);
+        Ok(self.blocks.read((self.number, *length), bytes, offset, fetch)?)
+    }
+
+    fn read_alone_at(&self, bytes: &mut [u8], offset: u64) -> Result<(), StoreError> {
+        self.check_inside(bytes.len(), offset)?;
+        let Found { key, etag, .. } = &self.found;
+        let range = offset..offset + bytes.len() as u64;
+        bytes.copy_from_slice(&self.bucket.read(key, etag.as_deref(), range)?);
+        Ok(())
     }
 }

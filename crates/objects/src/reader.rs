@@ -25,10 +25,9 @@ impl ObjectReader {
     /// # Errors
     /// [`ObjectError::Missing`]; [`ObjectError::Changed`]; see [`ObjectError`].
     pub fn open(bucket: Bucket, key: &str, etag: Option<&str>) -> Result<Self, ObjectError> {
-        let name = || bucket.address(key).to_string();
-        let found = bucket.find(key)?.ok_or_else(|| ObjectError::Missing { name: name() })?;
+        let found = bucket.find(key)?.ok_or_else(|| bucket.missing(key))?;
         if etag.is_some() && found.etag.is_some() && etag != found.etag.as_deref() {
-            return Err(ObjectError::Changed { name: name() });
+            return Err(ObjectError::Changed { name: bucket.address(key).to_string() });
         }
         Ok(Self { bucket, found, position: 0, block: (0, Bytes::new()) })
     }

@@ -64,8 +64,7 @@ impl Bucket {
         if length > MOST_PARTS * LARGEST_PART_BYTES {
             return Err(ObjectError::TooLarge { name: address, length });
         }
-        let explain = |error| self.explain(key, "write", error);
-        let object = Self::path(key).map_err(explain)?;
+        let (object, explain) = self.object(key, "write")?;
         let writer = random_digits();
         let note = Note::of(path);
         self.end_earlier(path)?;
@@ -170,8 +169,7 @@ impl Bucket {
     pub(crate) fn end_earlier(&self, file: &Path) -> Result<(), ObjectError> {
         let note = Note::of(file);
         let Some((key, id)) = note.read() else { return Ok(()) };
-        let explain = |error| self.explain(&key, "end an earlier upload of", error);
-        let object = Self::path(&key).map_err(explain)?;
+        let (object, explain) = self.object(&key, "end an earlier upload of")?;
         match self.runtime.block_on(self.keeping.abort_multipart(&object, &id)) {
             // It was complete, or ended by someone else.
             Ok(()) | Err(Error::NotFound { .. }) => {

@@ -2,4 +2,3 @@
 
 pub mod layer;
 pub(crate) mod sea;
-pub mod split;

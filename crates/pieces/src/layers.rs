@@ -8,9 +8,9 @@
 //! Roads are laid on the ground of each tile, so what is kept of them are pieces. The parts of other layers are encoded at once, as a section
 //! of their tile.
 
+pub(crate) mod blocks;
 pub mod defects;
 pub mod fixed_points;
-pub mod layer_totals;
 pub(crate) mod layer_writer;
 pub(crate) mod parts_by_tile;
 pub(crate) mod plan_splitting;
@@ -22,9 +22,8 @@ use std::{
 };
 
 use corniche_areas::ClassedLayer;
-use corniche_geom::TileId;
 use corniche_spec::artifacts::Kind;
-use corniche_tileset::{AreasSection, EncodeError, LinesSection, SectionSize, SpansSection};
+use corniche_tileset::{PayloadSizes, Section, SectionSize};
 use corniche_work::Stage;
 use serde::{Deserialize, Serialize};
 
@@ -63,55 +62,51 @@ impl SectionLayer {
         }
     }
 
+    /// What is told while its objects are split, and the artifacts that hold the section of a tile and the totals.
+    const fn row(self) -> (Stage, Kind, Kind) {
+        match self {
+            Self::Areas => (Stage::MapAreas, Kind::AreaSection, Kind::AreaTotals),
+            Self::Lines(ClassedLayer::Boundaries) => {
+                (Stage::Boundaries, Kind::BoundarySection, Kind::BoundaryTotals)
+            }
+            Self::Spans => (Stage::Spans, Kind::SpanSection, Kind::SpanTotals),
+        }
+    }
+
     /// What is told while its objects are split.
     pub(crate) fn stage(self) -> Stage {
-        match self {
-            Self::Areas => Stage::MapAreas,
-            Self::Lines(ClassedLayer::Boundaries) => Stage::Boundaries,
-            Self::Spans => Stage::Spans,
-        }
+        self.row().0
     }
 
     /// The artifact that holds the section of a tile.
     #[must_use]
     pub fn section(self) -> Kind {
-        match self {
-            Self::Areas => Kind::AreaSection,
-            Self::Lines(ClassedLayer::Boundaries) => Kind::BoundarySection,
-            Self::Spans => Kind::SpanSection,
-        }
+        self.row().1
     }
 
     /// The artifact that holds the totals.
     #[must_use]
     pub fn totals(self) -> Kind {
+        self.row().2
+    }
+
+    /// The section of a payload with these bytes, which were kept.
+    #[must_use]
+    pub fn section_of(self, bytes: Vec<u8>) -> Section {
         match self {
-            Self::Areas => Kind::AreaTotals,
-            Self::Lines(ClassedLayer::Boundaries) => Kind::BoundaryTotals,
-            Self::Spans => Kind::SpanTotals,
+            Self::Areas => Section::of_areas(bytes),
+            Self::Lines(layer) => Section::of_lines(layer, bytes),
+            Self::Spans => Section::of_spans(bytes),
         }
     }
 
-    /// Adds a section to the payload of a tile.
-    ///
-    /// # Errors
-    /// See [`EncodeError`].
-    pub fn add_to(
-        self,
-        payload: &[u8],
-        id: TileId,
-        section: Vec<u8>,
-    ) -> Result<(Vec<u8>, SectionSize), EncodeError> {
+    /// What its section takes in a payload with these sizes.
+    #[must_use]
+    pub fn size_in(self, sizes: &PayloadSizes) -> SectionSize {
         match self {
-            Self::Areas => {
-                corniche_tileset::with_areas(payload, id, AreasSection::from_bytes(section))
-            }
-            Self::Lines(layer) => {
-                corniche_tileset::with_lines(payload, id, LinesSection::from_bytes(layer, section))
-            }
-            Self::Spans => {
-                corniche_tileset::with_spans(payload, id, SpansSection::from_bytes(section))
-            }
+            Self::Areas => sizes.areas,
+            Self::Lines(layer) => sizes.lines[layer as usize],
+            Self::Spans => sizes.spans,
         }
     }
 }

@@ -1,4 +1,3 @@
 //! Layers of lines of the extract: their parts by tile.
 
 pub mod layer;
-pub mod split;

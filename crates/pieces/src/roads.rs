@@ -1,6 +1,5 @@
 //! Roads of the extract, split into pieces by tile and laid on tiles: for the build, and once more for `verify`.
 
-pub mod counts;
 pub mod ground_lines;
 pub mod lay;
 pub mod layer;

@@ -114,7 +114,7 @@ pub(crate) fn warn(context: &Context<'_>) {
             context.observer.warning(&text);
         }
     }
-    context.file_datums.warnings().for_each(|text| context.observer.warning(&text));
+    context.opened.file_datums.warnings().for_each(|text| context.observer.warning(&text));
     warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
     warn_of_other_network(context);
 }
@@ -128,8 +128,13 @@ fn warn_of_other_network(context: &Context<'_>) {
     if osm.is_empty() || !manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input)) {
         return;
     }
-    let ours =
-        settings_record::of(of_terrain, roads, context.max_error_m, None, (areas.as_ref(), lines));
+    let ours = settings_record::of(
+        of_terrain,
+        roads,
+        context.opened.max_error_m,
+        None,
+        (areas.as_ref(), lines),
+    );
     let differences = network_differences(&ours, &manifest.settings);
     if !differences.is_empty() {
         context.observer.warning(&format!(

@@ -1,18 +1,15 @@
 //! What every step of a build needs: the elevation files as opened, the grid, the levels, and the store.
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{CoordinateTable, GridFrame, LatticeBounds, LatticeRegion, TileId};
-use corniche_gis::{CrsError, DemProjection, FileDatums};
+use corniche_geom::{GridFrame, LatticeBounds, LatticeRegion, TileId};
+use corniche_gis::{CrsError, DemProjection};
 use corniche_ground::{
-    heights::pyramid::Pyramid,
-    photos::{source::PhotoSource, textures::TextureStore},
-    terrain::ground::GroundSource,
+    heights::pyramid::Pyramid, photos::textures::TextureStore, terrain::ground::GroundSource,
 };
 use corniche_plan::Opened;
 use corniche_spec::{
     Observer, PlanSettings, Resources, data_outline::data_outline, data_tiles::DataTiles,
-    extent::Outline, inputs::Inputs, levels::Levels, memory_shares::MemoryShares,
-    true_lengths::TrueLengths,
+    extent::Outline, levels::Levels, memory_shares::MemoryShares, true_lengths::TrueLengths,
 };
 use corniche_store::Artifacts;
 
@@ -20,19 +17,12 @@ use corniche_store::Artifacts;
 pub(crate) struct Context<'a> {
     pub(crate) settings: &'a PlanSettings,
     pub(crate) resources: Resources,
-    pub(crate) inputs: &'a Inputs,
+    pub(crate) opened: &'a Opened,
     pub(crate) source: &'a GroundSource,
     pub(crate) grid: &'a GridPlan,
     pub(crate) levels: &'a Levels,
-    pub(crate) coordinates: &'a CoordinateTable,
     /// WGS84 ⇄ the grid's working CRS.
     pub(crate) projection: &'a DemProjection,
-    /// Tolerance of the finest level, given or derived from the cell.
-    pub(crate) max_error_m: f64,
-    /// Photos of the ground.
-    pub(crate) photo: &'a PhotoSource,
-    /// How polygons and photos come to the datum of the grid.
-    pub(crate) file_datums: &'a FileDatums,
     pub(crate) store: &'a dyn Artifacts,
     pub(crate) observer: &'a dyn Observer,
 }
@@ -46,39 +36,13 @@ impl<'a> Context<'a> {
         store: &'a dyn Artifacts,
         observer: &'a dyn Observer,
     ) -> Self {
-        let Opened {
-            inputs,
-            source,
-            grid,
-            levels,
-            max_error_m,
-            coordinates,
-            projection,
-            photo,
-            relief: _,
-            file_datums,
-        } = opened;
-        let max_error_m = *max_error_m;
-        Self {
-            settings,
-            resources,
-            inputs,
-            source,
-            grid,
-            levels,
-            coordinates,
-            projection,
-            max_error_m,
-            photo,
-            file_datums,
-            store,
-            observer,
-        }
+        let Opened { source, grid, levels, projection, .. } = opened;
+        Self { settings, resources, opened, source, grid, levels, projection, store, observer }
     }
 
     /// How roads are measured.
     pub(crate) fn lengths(&self) -> TrueLengths<'a> {
-        TrueLengths::new(*self.frame(), self.coordinates, self.projection)
+        TrueLengths::new(*self.frame(), &self.opened.coordinates, self.projection)
     }
 
     pub(crate) fn frame(&self) -> &GridFrame {
@@ -109,7 +73,8 @@ impl<'a> Context<'a> {
 
     /// Where textures of photos come from and go to.
     pub(crate) fn textures(&self) -> TextureStore<'_> {
-        let Self { store, source, photo, .. } = *self;
+        let Self { store, source, opened, .. } = *self;
+        let photo = &opened.photo;
         TextureStore { store, source, photo, frame: self.frame(), data: self.data() }
     }
 

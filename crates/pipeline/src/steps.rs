@@ -14,8 +14,5 @@ pub(crate) mod photos;
 pub(crate) mod recorded_tiles;
 pub(crate) mod roads;
 pub(crate) mod shares;
-pub(crate) mod spans;
-pub(crate) mod sums;
 pub(crate) mod tiles;
-pub(crate) mod tins;
 pub(crate) mod top;

@@ -1,8 +1,6 @@
 //! The work on one tile: heights to TIN, TIN to deviations, roads on the TIN, all of it to bytes and to a record.
 
 pub(crate) mod encode;
-pub(crate) mod grounds;
-pub(crate) mod low_pass;
 pub(crate) mod measure;
 pub(crate) mod mesh;
 pub(crate) mod record;

@@ -1,9 +1,6 @@
 //! The bytes of a file on a web server, for readers that wait for them.
 
-use std::{
-    ops::Range,
-    sync::{Mutex, OnceLock, PoisonError},
-};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use bytes::Bytes;
 use corniche_blocks::{BlockCache, Limits};
@@ -85,13 +82,16 @@ impl HttpSource {
         Ok(self.version.get_or_init(|| version))
     }
 
-    fn block(&self, number: u64, last: u64, version: &Version) -> Result<Bytes, HttpError> {
-        let count = version.length.div_ceil(BLOCK_BYTES);
-        self.blocks.get((FILE, number), last + 1 - number, count, |run: Range<u64>| {
+    fn bytes(&self, offset: u64, length: usize) -> Result<Vec<u8>, HttpError> {
+        let version = self.version()?;
+        if offset.checked_add(length as u64).is_none_or(|end| end > version.length) {
+            return Err(HttpError::Beyond { length: version.length });
+        }
+        let mut read = vec![0; length];
+        self.blocks.read((FILE, version.length), &mut read, offset, |asked| {
             if let Some(changed) = self.changed.get() {
                 return Err(changed.clone());
             }
-            let asked = run.start * BLOCK_BYTES..version.length.min(run.end * BLOCK_BYTES);
             let got = self.ranges.get(&asked, Some(version)).inspect_err(|error| {
                 if matches!(error, HttpError::Changed { .. }) {
                     // Another thread may have seen it first.
@@ -99,27 +99,7 @@ impl HttpSource {
                 }
             });
             got.map(|(_, bytes)| bytes)
-        })
-    }
-
-    fn bytes(&self, offset: u64, length: usize) -> Result<Vec<u8>, HttpError> {
-        let version = self.version()?;
-        let end = offset.checked_add(length as u64).filter(|&end| end <= version.length);
-        let Some(end) = end else {
-            return Err(HttpError::Beyond { length: version.length });
-        };
-        let mut read = Vec::with_capacity(length);
-        if length == 0 {
-            return Ok(read);
-        }
-        let last = (end - 1) / BLOCK_BYTES;
-        for number in offset / BLOCK_BYTES..=last {
-            let block = self.block(number, last, version)?;
-            let begin = number * BLOCK_BYTES;
-            let inside = offset.saturating_sub(begin) as usize
-                ..(end - begin).min(block.len() as u64) as usize;
-            read.extend_from_slice(&block[inside]);
-        }
+        })?;
         Ok(read)
     }
 }

@@ -1,7 +1,7 @@
 //! Files on disk that may change: which version an open one is.
 
 use std::{
-    fmt::{self, Write as _},
+    fmt,
     fs::{File, Metadata},
     io::{self, Read as _, Seek as _, SeekFrom},
     ops::Range,
@@ -109,10 +109,13 @@ fn tag_of(on_disk: &dyn OnDisk, file: &File, state: &State) -> io::Result<String
         Ok(since) => ("", since),
         Err(before) => ("-", before.duration()),
     };
-    let mut tag = format!("\"{:x}-{sign}{:x}-", state.length_bytes, since.as_nanos());
-    for byte in &digest.finalize()[..16] {
-        let _ = write!(tag, "{byte:02x}");
-    }
-    tag.push('"');
-    Ok(tag)
+    let (length_bytes, nanos, hash) = (state.length_bytes, since.as_nanos(), half_in_hex(digest));
+    Ok(format!("\"{length_bytes:x}-{sign}{nanos:x}-{hash}\""))
+}
+
+/// The first half of a hash, as hexadecimal digits.
+pub(crate) fn half_in_hex(digest: Sha256) -> String {
+    let half =
+        digest.finalize().iter().take(16).fold(0, |half: u128, &byte| half << 8 | u128::from(byte));
+    format!("{half:032x}")
 }

@@ -2,7 +2,6 @@
 
 use std::{
     collections::BTreeMap,
-    fmt::Write as _,
     sync::{Arc, Mutex},
 };
 
@@ -12,7 +11,7 @@ use sha2::{Digest as _, Sha256};
 
 use crate::{
     media_type::media_type,
-    on_disk::{Known, OnDisk},
+    on_disk::{Known, OnDisk, half_in_hex},
     packed::{Packed, is_worth_it},
     policy::policy,
 };
@@ -87,12 +86,7 @@ impl Routes {
 
 /// Half of a hash of the bytes, in quotes.
 fn tag_of(bytes: &[u8]) -> String {
-    let mut tag = String::from("\"");
-    for byte in &Sha256::digest(bytes)[..16] {
-        let _ = write!(tag, "{byte:02x}");
-    }
-    tag.push('"');
-    tag
+    format!("\"{}\"", half_in_hex(Sha256::new_with_prefix(bytes)))
 }
 
 #[cfg(test)]

@@ -1,49 +1,23 @@
-//! Files as the rest of the crate uses them: interrupted calls are made again, short writes and reads are completed, bytes are counted,
-//! and an error says which file it is about.
+//! Files as the rest of the crate uses them: interrupted calls are made again, short writes and reads are completed, and
+//! an error says which file it is about.
 
 use std::{
-    fmt, io,
+    io,
     path::{Path, PathBuf},
-    sync::{
-        Arc,
-        atomic::{AtomicU64, Ordering},
-    },
+    sync::Arc,
 };
 
 use crate::{Disk, DiskFile, Hold, Listed, OpenMode, PartFile, StoreError};
 
-/// Bytes that went through the store so far.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Traffic {
-    /// Read from the disk, or from the system's cache of it.
-    pub read_bytes: u64,
-    /// How many bytes were written.
-    pub written_bytes: u64,
-}
-
-/// A disk and what went through it.
+/// A disk.
+#[derive(Debug)]
 pub(crate) struct Files {
     disk: Arc<dyn Disk>,
-    read_bytes: AtomicU64,
-    written_bytes: AtomicU64,
-}
-
-impl fmt::Debug for Files {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Files").field("traffic", &self.traffic()).finish_non_exhaustive()
-    }
 }
 
 impl Files {
     pub(crate) fn new(disk: Arc<dyn Disk>) -> Arc<Self> {
-        Arc::new(Self { disk, read_bytes: AtomicU64::new(0), written_bytes: AtomicU64::new(0) })
-    }
-
-    pub(crate) fn traffic(&self) -> Traffic {
-        Traffic {
-            read_bytes: self.read_bytes.load(Ordering::Relaxed),
-            written_bytes: self.written_bytes.load(Ordering::Relaxed),
-        }
+        Arc::new(Self { disk })
     }
 
     /// Opens a file. Of kind `NotFound` and `AlreadyExists` the caller may make sense; see [`is_kind`].
@@ -123,7 +97,6 @@ impl OpenFile {
                 Ok(0) => Err(io::ErrorKind::WriteZero.into()),
                 written => written,
             })?;
-            self.files.written_bytes.fetch_add(written as u64, Ordering::Relaxed);
             bytes = &bytes[written..];
             offset += written as u64;
         }
@@ -147,7 +120,6 @@ impl OpenFile {
             if read == 0 {
                 break;
             }
-            self.files.read_bytes.fetch_add(read as u64, Ordering::Relaxed);
             length += read;
         }
         Ok(length)

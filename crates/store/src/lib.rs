@@ -33,7 +33,6 @@ mod artifacts;
 mod disk;
 mod error;
 mod files;
-mod groups;
 mod ids;
 mod in_memory_store;
 mod local;
@@ -47,8 +46,6 @@ mod system_disk;
 pub use artifacts::{Artifacts, Key};
 pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 pub use error::StoreError;
-pub use files::Traffic;
-pub use groups::Groups;
 pub use ids::random_digits;
 pub use in_memory_store::{MemoryScratch, MemoryStore};
 pub use local::{
@@ -61,6 +58,6 @@ pub use output_target::{
 };
 pub use parts_place::{PartFile, PartsPlace, Publish};
 pub use scratch::{Scratch, Span};
-pub use sorter::{SortRecord, Sorted, Sorter};
+pub use sorter::{Groups, SortRecord, Sorted, Sorter};
 pub use stored_plan::{PlanHash, StoredPlan};
 pub use system_disk::SystemDisk;

@@ -26,10 +26,7 @@ mod sealed_part;
 
 use std::{
     path::{Path, PathBuf},
-    sync::{
-        Arc, PoisonError, RwLock, RwLockReadGuard,
-        atomic::{AtomicU64, Ordering},
-    },
+    sync::{Arc, PoisonError, RwLock, RwLockReadGuard},
     time::Duration,
 };
 
@@ -43,7 +40,7 @@ pub use sealed_part::check_sealed;
 use crate::{
     Artifacts, Disk, Hold, Key, Listed, PartFile, PartsPlace, PlanHash, Publish, StoreError,
     StoredPlan,
-    files::{Files, OpenFile, Traffic},
+    files::{Files, OpenFile},
 };
 use binding::FolderState;
 use entry::Entry;
@@ -74,13 +71,11 @@ struct Own {
     folder: PathBuf,
     part: OpenPart,
     dropped: u64,
-    sealed_bytes: u64,
-    scratch_bytes: Arc<AtomicU64>,
     /// Dropped last: until then nobody else may touch the folder.
     lock: OpenFile,
 }
 
-/// A part to be written by [`LocalStore::open_parts`].
+/// A part to be written by [`LocalStore::open_places`].
 #[derive(Debug, Clone, Copy)]
 pub struct OwnPart<'a> {
     /// The store's folder; made where it is not there, within one that is.
@@ -156,26 +151,6 @@ impl LocalStore {
         Self::assemble(files, sealed, Some((folder, BUILD, lock)), plan, interval)
     }
 
-    /// Opens the sealed parts of several folders as one, and a part of its own to write if asked: [`Self::open_places`] for folders, of which every
-    /// part is read, and where several processes may work in one folder at once.
-    ///
-    /// # Errors
-    /// As [`Self::open_places`].
-    pub fn open_parts(
-        disk: Arc<dyn Disk>,
-        folders: &[&Path],
-        plan: &PlanHash,
-        own: Option<OwnPart<'_>>,
-    ) -> Result<Self, StoreError> {
-        let files = Files::new(disk);
-        let folders: Vec<Folder> =
-            folders.iter().map(|folder| Folder::of(&files, folder)).collect();
-        let places: Vec<&dyn PartsPlace> =
-            folders.iter().map(|folder| folder as &dyn PartsPlace).collect();
-        let sealed = SealedParts { places: &places, ..NO_PARTS };
-        Self::open_of(files, sealed, plan, own.map(|own| (own, Hold::Shared)))
-    }
-
     /// Opens the sealed parts of several places as one, and a part of its own to write if asked. Without one the store can only be read.
     /// The sealed parts in the own part's folder are read too. `Hold::Shared` lets other processes make their parts in that folder at the same
     /// time.
@@ -190,15 +165,7 @@ impl LocalStore {
         plan: &PlanHash,
         own: Option<(OwnPart<'_>, Hold)>,
     ) -> Result<Self, StoreError> {
-        Self::open_of(Files::new(disk), sealed, plan, own)
-    }
-
-    fn open_of(
-        files: Arc<Files>,
-        sealed: SealedParts<'_>,
-        plan: &PlanHash,
-        own: Option<(OwnPart<'_>, Hold)>,
-    ) -> Result<Self, StoreError> {
+        let files = Files::new(disk);
         let SealedParts { places, is_needed } = sealed;
         let Some((own, hold)) = own else {
             check_plans(places, plan)?;
@@ -230,7 +197,7 @@ impl LocalStore {
         interval: Duration,
     ) -> Result<Self, StoreError> {
         let mut index = Index::default();
-        let (mut sealed, mut sealed_bytes) = (Vec::<Box<dyn PartFile>>::new(), 0);
+        let mut sealed = Vec::<Box<dyn PartFile>>::new();
         for place in parts.places {
             for name in place.parts()? {
                 if !layout::part_of_sealed(&name).is_some_and(parts.is_needed) {
@@ -240,9 +207,6 @@ impl LocalStore {
                 let number = part_number(file.path(), sealed.len())?;
                 let visit = &mut |path: &Path, entry| add(&mut index, &sealed, number, path, entry);
                 sealed_part::read_list(&*file, plan, visit)?;
-                if own.as_ref().is_some_and(|(own, ..)| *own == place.name()) {
-                    sealed_bytes += file.length()?;
-                }
                 sealed.push(file);
             }
         }
@@ -254,14 +218,7 @@ impl LocalStore {
                 &mut |path: &Path, entry| add(&mut index, &store.sealed, OPEN_PART, path, entry);
             let (part, dropped) =
                 OpenPart::open(&store.files, folder, name, plan, interval, visit)?;
-            store.own = Some(Own {
-                folder: folder.to_owned(),
-                part,
-                dropped,
-                sealed_bytes,
-                scratch_bytes: Arc::default(),
-                lock,
-            });
+            store.own = Some(Own { folder: folder.to_owned(), part, dropped, lock });
         }
         store.index = RwLock::new(index);
         Ok(store)
@@ -329,7 +286,7 @@ impl LocalStore {
     pub fn scratch(&self) -> Result<LocalScratch, StoreError> {
         let own = self.own.as_ref().ok_or_else(|| self.read_only())?;
         let file = lock::create_owned(&self.files, |suffix| layout::scratch(&own.folder, suffix))?;
-        Ok(LocalScratch::new(file, Arc::clone(&own.scratch_bytes)))
+        Ok(LocalScratch::new(file))
     }
 
     /// Removes the store. Only what a store makes is removed: where the folder holds something else, it stays, and what stays is returned.
@@ -366,20 +323,6 @@ impl LocalStore {
     #[must_use]
     pub fn repaired(&self) -> u64 {
         self.own.as_ref().map_or(0, |own| own.dropped)
-    }
-
-    /// Bytes read and written so far, scratch space included.
-    #[must_use]
-    pub fn traffic(&self) -> Traffic {
-        self.files.traffic()
-    }
-
-    /// Bytes of all files in the folder of the own part that this process knows of, scratch space included; 0 without one.
-    #[must_use]
-    pub fn disk_bytes(&self) -> u64 {
-        self.own.as_ref().map_or(0, |own| {
-            own.part.disk_bytes() + own.sealed_bytes + own.scratch_bytes.load(Ordering::Relaxed)
-        })
     }
 
     fn index(&self) -> RwLockReadGuard<'_, Index> {

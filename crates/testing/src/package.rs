@@ -8,9 +8,10 @@ use corniche_geom::{
 };
 use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 use corniche_tileset::{
-    Counts, FORMAT_VERSION, GeoRoad, GrowthRow, LevelRecord, Manifest, PayloadContext, RoadRecord,
-    SampleErrorRecord, ScaleRecord, SettingsRecord, SpanHeight, SpanPoint, SpanRun, SvRoad,
-    Terrain, TilePayload, VerticalRecord, Writer, encode, encode_spans, pmtiles_order, with_spans,
+    Counts, FORMAT_VERSION, GeoRoad, GrowthRow, LevelRecord, Manifest, PayloadBuilder,
+    PayloadContext, RoadRecord, SampleErrorRecord, ScaleRecord, Section, SettingsRecord,
+    SpanHeight, SpanPoint, SpanRun, SvRoad, Terrain, TilePayload, VerticalRecord, Writer, encode,
+    encode_spans, pmtiles_order,
 };
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
@@ -211,7 +212,15 @@ pub fn spans(id: TileId) -> Vec<SpanRun> {
 #[must_use]
 pub fn encoded_with_spans(id: TileId) -> Vec<u8> {
     let section = encode_spans(id, &frame(), &spans(id)).unwrap().unwrap();
-    with_spans(&encoded(id), id, section).unwrap().0
+    with_section(&encoded(id), id, section)
+}
+
+/// A payload of a tile with a section more.
+#[must_use]
+pub fn with_section(payload: &[u8], id: TileId, section: Section) -> Vec<u8> {
+    let mut builder = PayloadBuilder::with_all_of(payload, id).unwrap();
+    builder.add(section).unwrap();
+    builder.seal().unwrap().bytes
 }
 
 /// The small package as the writer writes it.

@@ -58,9 +58,7 @@ pub use payload::{
 };
 #[cfg(feature = "write")]
 pub use payload::{
-    AreasSection, EncodedTile, LinesSection, PayloadContext, PhotoSection, SpansSection,
-    area_part_sizes, encode, encode_areas, encode_lines, encode_photo, encode_spans,
-    encode_with_ground_of, photo_section, terrain_part_sizes, with_areas, with_lines, with_photo,
-    with_spans,
+    EncodedTile, PayloadBuilder, PayloadContext, Section, area_part_sizes, encode, encode_areas,
+    encode_lines, encode_photo, encode_sections, encode_spans, photo_section, terrain_part_sizes,
 };
 pub use tile_order::{pmtiles_order, tile_of_order};

@@ -3,6 +3,8 @@
 mod section_kind;
 mod tile_payload;
 
+#[cfg(feature = "write")]
+mod builder;
 mod decode;
 #[cfg(feature = "write")]
 mod encode;
@@ -41,24 +43,26 @@ mod damage;
 
 pub use areas::{AreaRecord, AreaRings, decode_areas};
 #[cfg(feature = "write")]
-pub use areas::{AreasSection, area_part_sizes, encode_areas, with_areas};
+pub use areas::{area_part_sizes, encode_areas};
+#[cfg(feature = "write")]
+pub use builder::{EncodedTile, PayloadBuilder, Section};
 pub use damage::{Damage, DecodeError, EncodeError};
 pub use decode::decode;
 #[cfg(feature = "write")]
-pub use encode::{EncodedTile, PayloadContext, encode, encode_with_ground_of, terrain_part_sizes};
+pub use encode::{PayloadContext, encode, encode_sections, terrain_part_sizes};
 pub use envelope::SectionSize;
-pub use lines::{LineRecord, decode_lines};
 #[cfg(feature = "write")]
-pub use lines::{LinesSection, encode_lines, with_lines};
+pub use lines::encode_lines;
+pub use lines::{LineRecord, decode_lines};
 pub use photo::{PHOTO_BORDER, Photo, decode_photo};
 #[cfg(feature = "write")]
-pub use photo::{PhotoSection, encode_photo, photo_section, with_photo};
+pub use photo::{encode_photo, photo_section};
 pub use relief::Relief;
 pub use section_kind::Sections;
 pub use sizes::{PayloadSizes, payload_sizes};
-pub use spans::{SpanHeight, SpanPoint, SpanRun, decode_spans};
 #[cfg(feature = "write")]
-pub use spans::{SpansSection, encode_spans, with_spans};
+pub use spans::encode_spans;
+pub use spans::{SpanHeight, SpanPoint, SpanRun, decode_spans};
 pub use summary::terrain_summary;
 pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TerrainSummary, TilePayload};
 

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use corniche_areas::AreaObject;
 use corniche_geom::{LatticeBounds, LatticePoint, TileId, cross};
+use corniche_pieces::layers::tile_section::{SectionOfTile, SectionSums};
 use corniche_spec::Observer;
 use corniche_tileset::{
     AreaCounts, AreaLevelRecord, AreaRecord, FilePackage, decode_areas, payload_sizes,
@@ -12,8 +13,8 @@ use corniche_tileset::{
 use super::{
     area_seams::{Beside, Seam},
     checks::{CheckId, Findings},
+    each_tile::{OfTile, check_totals, look_at_layer},
     error::VerifyError,
-    layer_sums::{Counts, OfTile, check_totals, look_at_layer},
 };
 
 pub(crate) fn verify(
@@ -30,7 +31,7 @@ pub(crate) fn verify(
     let levels = manifest.areas.iter().flat_map(|areas| &areas.levels);
     let level =
         |&AreaLevelRecord { level, tiles, areas: parts, points, bytes }: &AreaLevelRecord| {
-            (level, Counts { tiles, parts, points, bytes })
+            (level, SectionSums { tiles, parts, points, bytes })
         };
     let recorded = (CheckId::AreaSums, levels.map(level).collect());
     let look_at = |id| look_at(package, id);
@@ -62,7 +63,7 @@ fn look_at(package: &FilePackage, id: TileId) -> OfTile {
     let points = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
     let bytes = payload_sizes(&payload, id).map_or(0, |sizes| sizes.areas.stored);
     let points = points.map(|ring| ring.len() as u64).sum();
-    found.counts = Counts { tiles: 1, parts: areas.len() as u64, points, bytes };
+    found.counts = SectionOfTile { parts: areas.len() as u64, points, bytes };
     for beside in [Beside::East, Beside::South] {
         let Some(neighbour) = beside.neighbour(id) else { continue };
         let other = package.tile(neighbour).ok().flatten();

@@ -6,12 +6,18 @@ use corniche_dem::{Dem, GridPlan, OpenDemError, OpenOptions};
 use corniche_spec::{
     Observer, data_outline::data_outline, inputs::Inputs, manifest_texts, settings_record,
 };
-use corniche_tileset::{InputKind, InputRecord, Manifest};
+use corniche_tileset::{InputKind, InputRecord, Manifest, SampleSums};
 
 use super::{
-    checks::{Check, CheckId, as_json},
+    checks::{Check, CheckId, Findings, as_json},
+    decoded_tiles::DecodedTiles,
+    deviations,
     error::VerifyError,
+    report::VerifyReport,
+    samples,
+    verify_settings::GivenFiles,
     verify_settings::VerifySettings,
+    vertices_against_dem,
 };
 
 /// Opens the DEM as the build did and makes sure that it is the same one. If its grid is not that of the package, a check
@@ -34,28 +40,10 @@ pub(crate) fn open(
     terrain.plan.polygon.clone_from(&settings.polygon);
     let dem = open_as_recorded(&settings.dem, &terrain.open)?;
     let given = inputs.hash(observer)?;
-    // Files are compared by content, not by name: a file may have been moved or renamed. Parts are sorted by their hash,
-    // because their recorded order is that of their names.
     let mut sizes = Check::new(CheckId::DemInputs);
-    for kind in [InputKind::Dem, InputKind::DemPart] {
-        let of_kind = |records: &mut dyn Iterator<Item = &InputRecord>| {
-            let mut found: Vec<InputRecord> =
-                records.filter(|record| kind.is_of(record)).cloned().collect();
-            if kind == InputKind::DemPart {
-                found.sort_by(|a, b| a.sha256.cmp(&b.sha256));
-            }
-            found
-        };
-        let (said, found) = (of_kind(&mut expected.iter().copied()), of_kind(&mut given.iter()));
-        if !are_same(&said, &found) {
-            return Err(other());
-        }
-        let pairs = said.iter().zip(&found).filter(|(said, found)| said.sha256 == found.sha256);
-        for (said, found) in pairs {
-            sizes.look(said.bytes == found.bytes, || {
-                format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
-            });
-        }
+    let kinds = [InputKind::Dem, InputKind::DemPart];
+    if !are_recorded(kinds, &manifest.inputs, &given, are_same, &mut sizes) {
+        return Err(other());
     }
     checks.push(sizes);
     let plan = dem.plan(&terrain.plan)?;
@@ -78,6 +66,38 @@ fn open_as_recorded(files: &[PathBuf], options: &OpenOptions) -> Result<Dem, Ope
         }
         opened => opened,
     }
+}
+
+/// Whether the given files of two kinds are those that are recorded, by `are_same`, and whether these are as long as recorded.
+///
+/// Files are compared by content, not by name: a file may have been moved or renamed. Parts, the second kind, are sorted by their hash, because their
+/// recorded order is that of their names.
+pub(crate) fn are_recorded(
+    kinds: [InputKind; 2],
+    recorded: &[InputRecord],
+    given: &[InputRecord],
+    are_same: impl Fn(&[InputRecord], &[InputRecord]) -> bool,
+    sizes: &mut Check,
+) -> bool {
+    kinds.iter().all(|kind| {
+        let of_kind = |records: &[InputRecord]| {
+            let of_kind = records.iter().filter(|record| kind.is_of(record));
+            let mut of_kind: Vec<InputRecord> = of_kind.cloned().collect();
+            if *kind == kinds[1] {
+                of_kind.sort_by(|a, b| a.sha256.cmp(&b.sha256));
+            }
+            of_kind
+        };
+        let (said, found) = (of_kind(recorded), of_kind(given));
+        let is_same = are_same(&said, &found);
+        let pairs = said.iter().zip(&found).filter(|(said, found)| said.sha256 == found.sha256);
+        for (said, found) in pairs.filter(|_| is_same) {
+            sizes.look(said.bytes == found.bytes, || {
+                format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
+            });
+        }
+        is_same
+    })
 }
 
 /// Whether files are those that are recorded, by their content. Of files that were not used, outside the bounds of the package, there is no
@@ -132,4 +152,39 @@ fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
         });
     }
     check
+}
+
+pub(crate) fn verify(
+    tiles: &DecodedTiles<'_>,
+    files: &GivenFiles<Option<(Dem, GridPlan)>>,
+    settings: &VerifySettings,
+    report: &mut VerifyReport,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let Some(opened) = &files.found else { return Ok(()) };
+    let compared = compare_all(tiles, opened, settings, report, observer);
+    VerifyError::unless_changed(&files.inputs, compared)
+}
+
+fn compare_all(
+    tiles: &DecodedTiles<'_>,
+    (dem, plan): &(Dem, GridPlan),
+    settings: &VerifySettings,
+    report: &mut VerifyReport,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let manifest = tiles.package.manifest();
+    let measured = deviations::measure(tiles, dem, plan, settings.threads, observer)?;
+    let at_samples = if plan.nodes_are_samples() {
+        measured.at_samples
+    } else {
+        samples::measure(tiles, dem, plan, settings, observer)?
+    };
+    let mut findings = Findings::default();
+    report.errors = deviations::verify(tiles, &measured.by_tile, &mut findings)?;
+    report.checks.extend(findings);
+    vertices_against_dem::verify(tiles, dem, plan, settings.threads, report, observer)?;
+    report.checks.extend(samples::judge(manifest, &at_samples));
+    report.samples = at_samples.last().map(SampleSums::record);
+    Ok(())
 }

@@ -1,5 +1,7 @@
-//! Parts of the manifest that follow from other parts: levels from the settings, and texts that are always the same.
+//! What the manifest says, by itself: levels follow from the settings, the grid from the data's rectangle, some texts are always the same, and (P6) its
+//! sums add up, so nothing was dropped without being counted.
 
+use corniche_geom::{GridFrame, LatticeBounds, TILE_CELLS, TileId};
 use corniche_spec::{Loss, levels::Levels, manifest_texts, settings_record};
 use corniche_tileset::{InputKind, Manifest};
 
@@ -81,4 +83,85 @@ fn texts(manifest: &Manifest, findings: &mut Findings) {
             format!("roads lost as {:?}", loss.reason)
         });
     }
+}
+
+/// Lengths that are measured again over the edges of TINs agree to this share: every crossing moves a point by less than
+/// a millimetre.
+pub(crate) const LENGTH_SHARE: f64 = 1e-5;
+
+/// And each line may differ by this, because both of its ends may be cuts, which are put on a lattice of a millimetre.
+pub(crate) const CUT_M: f64 = 0.002;
+
+pub(crate) fn verify_sums(manifest: &Manifest, findings: &mut Findings) {
+    let counts = &manifest.counts;
+    let samples = &counts.samples;
+    findings.look(
+        CheckId::SampleSums,
+        samples.nodes == samples.with_data + samples.filled + samples.void,
+        || format!("{} nodes, but {samples:?}", samples.nodes),
+    );
+    let lost: u64 = counts.roads_lost.iter().map(|loss| loss.roads).sum();
+    findings.look(CheckId::RoadSums, counts.roads_in == counts.roads_kept + lost, || {
+        format!("{} roads in, {} kept, {lost} lost", counts.roads_in, counts.roads_kept)
+    });
+    let lost_um: u64 = counts.roads_lost.iter().map(|loss| loss.length_um).sum();
+    findings.look(CheckId::RoadSums, counts.roads_in_um == counts.roads_kept_um + lost_um, || {
+        format!("{} µm in, {} µm kept, {lost_um} µm lost", counts.roads_in_um, counts.roads_kept_um)
+    });
+    let by_class: u64 = counts.classes.iter().map(|&(count, _)| count).sum();
+    let by_class_um: u64 = counts.classes.iter().map(|&(_, length_um)| length_um).sum();
+    findings.look(
+        CheckId::RoadSums,
+        by_class == counts.roads_in && by_class_um == counts.roads_in_um,
+        || {
+            format!(
+                "{by_class} roads of {by_class_um} µm by class, {} of {} µm in all",
+                counts.roads_in, counts.roads_in_um
+            )
+        },
+    );
+}
+
+pub(crate) fn verify_grid(manifest: &Manifest, findings: &mut Findings) {
+    let frame = &manifest.frame;
+    let [south_west, north_east] = manifest.data_nodes();
+    let bounds = manifest.data_bounds.to_array();
+    let corners = [
+        frame.x_m(south_west.i),
+        frame.y_m(south_west.j),
+        frame.x_m(north_east.i),
+        frame.y_m(north_east.j),
+    ];
+    findings.look(CheckId::Grid, corners.map(f64::to_bits) == bounds.map(f64::to_bits), || {
+        format!("the data's rectangle is {bounds:?}, but the nodes nearest to its corners are at {corners:?}")
+    });
+    let wanted = GridFrame::covering(frame.origin_m(), frame.cell(), south_west, north_east);
+    findings.look(CheckId::Grid, wanted.as_ref() == Ok(frame), || {
+        format!("the grid is {frame:?}, the smallest over the data is {wanted:?}")
+    });
+    let counted = |low: i64, high: i64| u64::try_from(high - low + 1).unwrap_or_default();
+    let nodes =
+        counted(south_west.i, north_east.i).saturating_mul(counted(south_west.j, north_east.j));
+    let said = manifest.counts.samples.nodes;
+    findings.look(CheckId::SampleSums, said == nodes, || {
+        format!("{said} nodes are counted, the data's rectangle has {nodes}")
+    });
+}
+
+/// The bounds that were asked for.
+pub(crate) fn clip_of(manifest: &Manifest) -> Option<LatticeBounds> {
+    Some(manifest.frame.lattice_bounds(manifest.clip.as_ref()?.nodes))
+}
+
+/// First and last of the finest tiles on which the data's rectangle lies: its north-western and south-eastern one.
+pub(crate) fn data_tiles(manifest: &Manifest) -> Option<[TileId; 2]> {
+    let frame = &manifest.frame;
+    let [south_west, north_east] = manifest.data_nodes();
+    let corner = frame.root_corner();
+    let tile = |i: i64, j: i64| {
+        let column = u32::try_from((i - corner.i).div_euclid(TILE_CELLS)).ok()?;
+        let row = u32::try_from((corner.j - j).div_euclid(TILE_CELLS)).ok()?;
+        TileId::new(frame.max_level(), column, row).ok()
+    };
+    Some([tile(south_west.i, north_east.j)?, tile(north_east.i, south_west.j)?])
 }

@@ -33,10 +33,6 @@ pub enum VerifyError {
         "the elevation files do not give the package's grid or heights; corniche verify PACKAGE --dem FILE... says what differs"
     )]
     OtherGrid,
-    #[error(
-        "{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first"
-    )]
-    Stream { path: PathBuf },
     #[error("the name of {path:?} is not UTF-8; rename the file")]
     InputName { path: PathBuf },
     #[error(
@@ -88,8 +84,6 @@ pub enum VerifyError {
     Kept(#[source] ArtifactError),
     #[error(transparent)]
     Setup(InputError),
-    #[error("cannot read {path:?}")]
-    Input { path: PathBuf, source: std::io::Error },
     #[error(
         "intermediate results could not be kept in the folder for temporary files{}",
         LackOfRoom::advice(LackOfRoom::of(.0))
@@ -146,9 +140,7 @@ impl From<StoreError> for VerifyError {
 impl From<InputError> for VerifyError {
     fn from(error: InputError) -> Self {
         match error {
-            InputError::Read { path, source } => Self::Input { path, source },
             InputError::Name { path } => Self::InputName { path },
-            InputError::Stream { path } => Self::Stream { path },
             InputError::Changed { path } => Self::Changed { path },
             InputError::Dem(error) => Self::Dem(error),
             InputError::Interrupted => Self::Interrupted,

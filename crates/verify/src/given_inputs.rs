@@ -13,9 +13,8 @@ use super::{
     checks::{Check, Findings},
     dem_inputs,
     error::VerifyError,
-    given_files::GivenFiles,
     osm, osm_layers, photo_files,
-    verify_settings::VerifySettings,
+    verify_settings::{GivenFiles, VerifySettings},
 };
 
 /// What was given beside the package.

@@ -5,31 +5,22 @@ mod areas;
 mod attributes;
 mod checks;
 mod decoded_tiles;
-mod dem;
 mod dem_inputs;
 mod derived_records;
-mod deviation_checks;
 mod deviations;
 mod each_tile;
 mod elevation;
 mod error;
 mod geo_against_sv;
 mod georeference;
-mod given_files;
 mod given_inputs;
-mod grid;
 mod header;
-mod layer_sums;
-mod line_names;
 mod lines;
-mod manifest_sums;
 mod near_index;
 mod network;
-mod one_tile;
 mod osm;
 mod osm_layers;
 mod osm_tile;
-mod photo_against_files;
 mod photo_files;
 mod photos;
 mod polygon;
@@ -63,8 +54,8 @@ pub use self::{
     checks::{Check, CheckId, Needs},
     elevation::RecordedElevation,
     error::VerifyError,
-    line_names::line_names,
     network::network,
+    read_again::line_names,
     report::{ErrorFigures, GapFigures, VerifyReport},
     verify_settings::{VerifyOsm, VerifySettings},
 };
@@ -107,14 +98,14 @@ fn look_at_all(
         lines::verify(package, layer, settings.threads, &mut findings, observer)?;
     }
     spans::verify(&tiles, settings.threads, &mut findings, observer)?;
-    manifest_sums::verify(package.manifest(), &mut findings);
+    derived_records::verify_sums(package.manifest(), &mut findings);
     derived_records::verify(package.manifest(), &mut findings);
     header::verify(package, &mut findings)?;
-    grid::verify(package.manifest(), &mut findings);
+    derived_records::verify_grid(package.manifest(), &mut findings);
     georeference::verify(package.manifest(), &mut findings);
     if let Some(files) = &dem {
         given.push(Needs::Dem);
-        dem::verify(&tiles, files, settings, &mut report, observer)?;
+        dem_inputs::verify(&tiles, files, settings, &mut report, observer)?;
     }
     if let Some(files) = &photo {
         given.push(Needs::Photo);

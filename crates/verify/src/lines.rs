@@ -2,13 +2,14 @@
 
 use corniche_areas::ClassedLayer;
 use corniche_geom::{LatticeBounds, TileId};
+use corniche_pieces::layers::tile_section::SectionOfTile;
 use corniche_spec::Observer;
 use corniche_tileset::{FilePackage, LineCounts, LineRecord, decode_lines, payload_sizes};
 
 use super::{
     checks::{CheckId, Findings},
+    each_tile::{OfTile, check_totals, look_at_layer, recorded},
     error::VerifyError,
-    layer_sums::{Counts, OfTile, check_totals, look_at_layer},
 };
 
 /// The checks of a layer.
@@ -53,7 +54,7 @@ pub(crate) fn verify(
         format!("{} are counted and were not asked for, or the other way round", layer.name())
     });
     let levels = record.iter().flat_map(|lines| &lines.levels);
-    let recorded = (sums, levels.map(Counts::recorded).collect());
+    let recorded = (sums, levels.map(recorded).collect());
     let look_at = |id| look_at(package, layer, id);
     look_at_layer((package, threads), look_at, recorded, findings, observer)?;
     if let Some(lines) = record {
@@ -84,7 +85,7 @@ fn look_at(package: &FilePackage, layer: ClassedLayer, id: TileId) -> OfTile {
     found.findings.look(order, is_sorted, || format!("tile {id}"));
     let points = lines.iter().map(|line| line.points.len() as u64).sum();
     let bytes = payload_sizes(&payload, id).map_or(0, |sizes| sizes.lines[layer as usize].stored);
-    found.counts = Counts { tiles: 1, parts: lines.len() as u64, points, bytes };
+    found.counts = SectionOfTile { parts: lines.len() as u64, points, bytes };
     found
 }
 

@@ -10,10 +10,9 @@ use corniche_pieces::{
         reading_pool,
     },
     roads::{
-        counts::road_counts,
         ground_lines,
         lay::ClassSums,
-        losses::{LossFold, Sums},
+        losses::{LossFold, Sums, road_counts},
         pieces::TilePieces,
         totals::RoadTotals,
     },
@@ -35,13 +34,13 @@ use corniche_work::{Silent, Stage, workers};
 use super::{
     checks::{CheckId, Findings, as_json},
     decoded_tiles::DecodedTiles,
+    derived_records,
     error::VerifyError,
-    georeference,
-    given_files::GivenFiles,
-    grid, osm_layers,
+    georeference, osm_layers,
     osm_tile::{Found, Laying, look_at},
     polygon_cut,
     temporary_store::TemporaryStore,
+    verify_settings::GivenFiles,
     verify_settings::{VerifyOsm, VerifySettings},
 };
 
@@ -71,7 +70,7 @@ fn compare_all(
     // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads cannot be laid.
     let (Some(settings), Some([first, last])) = (
         settings_record::roads(&manifest.settings, chosen(&osm.table, manifest)),
-        grid::data_tiles(manifest),
+        derived_records::data_tiles(manifest),
     ) else {
         return Ok(());
     };
@@ -99,9 +98,8 @@ fn compare_all(
         projection: &projection,
         levels: &levels,
         lengths: &lengths,
-        data_bounds: frame.tile_lattice_bounds(first).union(&frame.tile_lattice_bounds(last)),
         node_bounds: frame.lattice_bounds(manifest.data_nodes()),
-        clip: grid::clip_of(manifest),
+        clip: derived_records::clip_of(manifest),
         bounds_deg: manifest.settings.bounds_deg,
         outline: outline.as_ref(),
         area_deg: manifest.area_deg(),
@@ -221,29 +219,23 @@ fn lay(
     }
     ids.sort_unstable_by_key(|&id| pmtiles_order(id));
     ids.dedup();
-    observer.begin(Stage::Tiles, Some(ids.len() as u64));
     let mut classes: BTreeMap<(u8, u8), ClassSums> = BTreeMap::new();
-    workers::in_order_unless_cancelled(
-        observer,
+    workers::side_by_side(
+        (observer, Stage::Tiles),
         threads,
-        ids.len(),
+        &ids,
         || Ok::<_, VerifyError>(()),
-        |(), index| {
-            let id = ids[index];
-            Ok(look_at(laying, id, &TilePieces::load(store, id)?))
-        },
-        |index, found: Found| {
+        |(), &id| Ok(look_at(laying, id, &TilePieces::load(store, id)?)),
+        |id, found: Found| {
             findings.merge(found.findings);
             fates.add(&found.fates)?;
-            ground_lines::put(&found.ground_lines, store, ids[index])?;
+            ground_lines::put(&found.ground_lines, store, *id)?;
             for (class, found) in found.classes {
-                classes.entry((ids[index].z(), class)).or_default().merge(&found);
+                classes.entry((id.z(), class)).or_default().merge(&found);
             }
-            observer.advance(Stage::Tiles, 1);
             Ok(())
         },
     )?;
-    observer.end(Stage::Tiles);
     Ok(classes)
 }
 

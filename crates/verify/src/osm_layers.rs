@@ -6,8 +6,8 @@ use corniche_pieces::ExtractError;
 use corniche_pieces::{
     layers::{
         SectionLayer,
-        layer_totals::{AreaTotals, LineTotals},
         tile_section::TileSection,
+        tile_section::{AreaTotals, LineTotals},
     },
     roads::losses,
     spans::{solving::SpanSolving, span_network::SpanInputs},
@@ -15,8 +15,8 @@ use corniche_pieces::{
 use corniche_spec::{Observer, settings_record};
 use corniche_store::Artifacts;
 use corniche_tileset::{
-    AreaRecord, AreasSection, FilePackage, LineRecord, LinesSection, Manifest, SpanRun,
-    SpansSection, decode_areas, decode_lines, decode_spans,
+    AreaRecord, FilePackage, LineRecord, Manifest, Section, SpanRun, decode_areas, decode_lines,
+    decode_spans,
 };
 
 use super::{
@@ -58,7 +58,7 @@ pub(crate) fn compare_areas(
         layer: SectionLayer::Areas,
         check: CheckId::OsmAreas,
         recorded: |payload: &[u8], id| decode_areas(payload, id, frame).ok(),
-        expected: |section, id| AreasSection::from_bytes(section).decode(id, frame).ok(),
+        expected: |section: Section, id| section.areas(id, frame).ok(),
         name: |area: &AreaRecord| {
             let rings = area.polygons.iter().flat_map(|part| &part.rings);
             let points: usize = rings.map(Vec::len).sum();
@@ -88,7 +88,7 @@ pub(crate) fn compare_lines(
         layer: SectionLayer::Lines(layer),
         check: checks.osm,
         recorded: |payload: &[u8], id| decode_lines(payload, id, layer).ok(),
-        expected: |section, id| LinesSection::from_bytes(layer, section).decode(id).ok(),
+        expected: |section: Section, id| section.lines(layer, id).ok(),
         name: |of: &LineRecord| {
             format!("{} way {} with {} points", of.class, of.way_id, of.points.len())
         },
@@ -129,7 +129,7 @@ pub(crate) fn compare_spans(
         layer: SectionLayer::Spans,
         check: CheckId::OsmSpans,
         recorded: |payload: &[u8], id| decode_spans(payload, id, frame, quantum_m).ok(),
-        expected: |section, id| SpansSection::from_bytes(section).decode(id, frame).ok(),
+        expected: |section: Section, id| section.spans(id, frame).ok(),
         name: |run: &SpanRun| {
             format!("a run of way {} with {} points", run.way_id, run.points.len())
         },
@@ -157,7 +157,7 @@ fn compare<T: PartialEq>(
     threads: usize,
     how: &HowCompared<
         impl Fn(&[u8], TileId) -> Option<Vec<T>> + Sync,
-        impl Fn(Vec<u8>, TileId) -> Option<Vec<T>> + Sync,
+        impl Fn(Section, TileId) -> Option<Vec<T>> + Sync,
         impl Fn(&T) -> String + Sync,
     >,
     findings: &mut Findings,
@@ -171,7 +171,8 @@ fn compare<T: PartialEq>(
             return Ok(findings);
         };
         let made = TileSection::get(how.layer, store, id)?;
-        let expected = made.and_then(|made| (how.expected)(made.section, id)).unwrap_or_default();
+        let made = made.map(|made| how.layer.section_of(made.section));
+        let expected = made.and_then(|made| (how.expected)(made, id)).unwrap_or_default();
         compare_in_order(how.check, id, [&recorded, &expected], &how.name, &mut findings);
         Ok(findings)
     };

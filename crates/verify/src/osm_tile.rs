@@ -17,7 +17,7 @@ use corniche_tin::{Placement, Surface};
 use super::{
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
-    grid::clip_of,
+    derived_records::clip_of,
 };
 
 /// What is needed to lay roads again.

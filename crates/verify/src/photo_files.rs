@@ -13,16 +13,19 @@ use corniche_geom::TileId;
 use corniche_ground::{photos::rasters, terrain::recorded_grid};
 use corniche_photo::{LevelChoice, PhotoGrid, PhotoReader, Photos, Texels};
 use corniche_spec::{Observer, data_tiles::DataTiles};
-use corniche_tileset::{FilePackage, InputKind, InputRecord, Manifest, PHOTO_BORDER, PhotoRecord};
+use corniche_tileset::{
+    FilePackage, InputKind, InputRecord, Manifest, PHOTO_BORDER, Photo, PhotoRecord, decode_photo,
+    encode_photo,
+};
 use corniche_work::{Stage, workers};
 
 use super::{
-    checks::{CheckId, Findings},
+    checks::{Check, CheckId, Findings},
+    dem_inputs::are_recorded,
     error::VerifyError,
     georeference,
-    given_files::GivenFiles,
-    photo_against_files::look_at,
     temporary_store::TemporaryStore,
+    verify_settings::GivenFiles,
     verify_settings::VerifySettings,
 };
 
@@ -68,29 +71,17 @@ pub(crate) fn check_inputs(
     if manifest.settings.photo.is_none() {
         return Err(VerifyError::NoPhotos);
     }
-    for kind in [InputKind::Photo, InputKind::PhotoPart] {
-        let of_kind = |records: &[InputRecord]| {
-            let records = records.iter().filter(|record| kind.is_of(record));
-            let mut records: Vec<InputRecord> = records.cloned().collect();
-            if kind == InputKind::PhotoPart {
-                records.sort_by(|a, b| a.sha256.cmp(&b.sha256));
-            }
-            records
-        };
-        let (said, found) = (of_kind(&manifest.inputs), of_kind(given));
-        let is_same = said.len() == found.len()
-            && said.iter().zip(&found).all(|(said, found)| said.sha256 == found.sha256);
-        if !is_same {
-            let photos = manifest.inputs.iter().filter(|input| InputKind::Photo.is_of(input));
-            let expected = photos.map(|input| input.name.clone()).collect();
-            return Err(VerifyError::OtherPhotos { paths: paths.to_vec(), expected });
-        }
-        for (said, found) in said.iter().zip(&found) {
-            findings.look(CheckId::PhotoInputs, said.bytes == found.bytes, || {
-                format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
-            });
-        }
+    let are_same = |said: &[InputRecord], found: &[InputRecord]| {
+        said.iter().map(|of| &of.sha256).eq(found.iter().map(|of| &of.sha256))
+    };
+    let kinds = [InputKind::Photo, InputKind::PhotoPart];
+    let mut sizes = Check::new(CheckId::PhotoInputs);
+    if !are_recorded(kinds, &manifest.inputs, given, are_same, &mut sizes) {
+        let photos = manifest.inputs.iter().filter(|input| InputKind::Photo.is_of(input));
+        let expected = photos.map(|input| input.name.clone()).collect();
+        return Err(VerifyError::OtherPhotos { paths: paths.to_vec(), expected });
     }
+    findings.merge([sizes]);
     Ok(())
 }
 
@@ -117,19 +108,16 @@ impl Comparison<'_> {
         let count = (0..=finest).map(|level| all(level).len() as u64).sum();
         observer.begin(Stage::Photos, Some(count));
         for level in (0..=finest).rev() {
-            let ids = all(level);
-            workers::in_order_unless_cancelled(
-                observer,
+            workers::advance(
+                (observer, Stage::Photos),
                 threads,
-                ids.len(),
+                &all(level),
                 || Ok::<_, VerifyError>(PhotoReader::new(self.photos)),
-                |reader, index| match ids[index] {
-                    id if level == finest => self.finest(reader, id),
-                    id => self.coarse(id),
+                |reader, &id| {
+                    if level == finest { self.finest(reader, id) } else { self.coarse(id) }
                 },
                 |_, found| {
                     findings.merge(found);
-                    observer.advance(Stage::Photos, 1);
                     Ok(())
                 },
             )?;
@@ -139,12 +127,8 @@ impl Comparison<'_> {
     }
 
     fn finest(&self, reader: &mut PhotoReader<'_>, id: TileId) -> Result<Findings, VerifyError> {
-        let levels = self.record.levels;
         let texels = reader.window(self.photos.texels().tile(id, PHOTO_BORDER))?;
-        let mut raster = texels.part([PHOTO_BORDER; 2], [rasters::SIDE << levels; 2]);
-        for _ in 0..levels {
-            raster = raster.halved();
-        }
+        let raster = rasters::of_texels(&texels, self.record.levels);
         rasters::put(&self.work.store, id, &raster)?;
         Ok(look_at(self.package, id, self.record, &texels))
     }
@@ -162,5 +146,160 @@ impl Comparison<'_> {
         rasters::put(store, id, &inner.halved())?;
         let texels = if levels == 0 { texels.halved() } else { texels };
         Ok(look_at(self.package, id, self.record, &texels))
+    }
+}
+
+/// Texels along a side of the blocks whose mean colours are compared: what differs only here and there is no coding's loss.
+const BLOCK: usize = 16;
+/// Colours may be off by so much more than coding again loses, in grey levels: decoders differ in their rounding.
+const ROUNDING: f64 = 0.5;
+/// And by this part of the loss.
+const MORE_LOSS: f64 = 1.05;
+/// A moved photo fits better only if it does so by more than this part: where a photo has one colour, all places fit.
+const BETTER: f64 = 0.99;
+
+/// Compares the photo of a tile with `texels`, those of the files with the border that tiles have; none at all where the files have
+/// none. Of a tile without ground nothing is compared. What cannot be decoded, or has another size, is told elsewhere.
+pub(crate) fn look_at(
+    package: &FilePackage,
+    id: TileId,
+    record: PhotoRecord,
+    texels: &Texels,
+) -> Findings {
+    let mut findings = Findings::default();
+    let Some(payload) = package.tile(id).ok().flatten() else { return findings };
+    let Ok(photo) = decode_photo(&payload, id) else { return findings };
+    let Some(photo) = photo else {
+        findings.look(CheckId::PhotoCover, texels.is_empty(), || {
+            format!("tile {id} has no photo, and the photos lie on it")
+        });
+        return findings;
+    };
+    if photo.levels != record.levels_on(id.z(), package.manifest().frame.max_level()) {
+        return findings;
+    }
+    if texels.is_empty() {
+        findings.look(CheckId::PhotoCover, false, || {
+            format!("tile {id} has a photo, and no photo lies on it")
+        });
+        return findings;
+    }
+    let side = photo.side();
+    let wrong = covers(texels.rgba()).zip(covers(&photo.rgba)).filter(|(a, b)| a != b).count();
+    findings.look(CheckId::PhotoCover, wrong == 0, || {
+        format!("{wrong} of {} texels of tile {id} have a photo or none wrongly", side * side)
+    });
+    let files = Picture { side, rgba: texels.rgba() };
+    let own = Picture { side, rgba: &photo.rgba };
+    look_at_place(id, &files, &own, &mut findings);
+    look_at_colours(id, record.quality, &files, &own, photo.levels, &mut findings);
+    findings
+}
+
+fn covers(rgba: &[u8]) -> impl Iterator<Item = bool> {
+    rgba.chunks_exact(4).map(|texel| texel[3] != 0)
+}
+
+/// A square of texels: red, green, blue, and 0 where there is no photo.
+struct Picture<'a> {
+    side: usize,
+    rgba: &'a [u8],
+}
+
+impl Picture<'_> {
+    fn at(&self, column: usize, row: usize) -> &[u8] {
+        let at = (row * self.side + column) * 4;
+        &self.rgba[at..at + 4]
+    }
+
+    /// Root mean square difference of the colours from those of `other` beside it, over the texels inside that both have; `None` where
+    /// there are none.
+    fn difference(&self, other: &Self, [east, south]: [isize; 2]) -> Option<f64> {
+        let inside = 1..self.side - 1;
+        let (mut squares, mut count) = (0_u64, 0_u64);
+        for row in inside.clone() {
+            for column in inside.clone() {
+                let (own, beside) = (
+                    self.at(column, row),
+                    other.at(column.wrapping_add_signed(east), row.wrapping_add_signed(south)),
+                );
+                if own[3] == 0 || beside[3] == 0 {
+                    continue;
+                }
+                count += 3;
+                let pairs = own.iter().zip(beside).take(3);
+                squares += pairs.map(|(a, b)| u64::from(a.abs_diff(*b)).pow(2)).sum::<u64>();
+            }
+        }
+        (count > 0).then(|| (squares as f64 / count as f64).sqrt())
+    }
+
+    /// The largest difference of the mean colours of a block from those of `other`, of one of the three colours.
+    fn block_difference(&self, other: &Self) -> f64 {
+        let starts = || (0..self.side).step_by(BLOCK);
+        let blocks = starts().flat_map(|row| starts().map(move |column| [column, row]));
+        blocks.map(|block| self.mean_difference(other, block)).fold(0.0, f64::max)
+    }
+
+    fn mean_difference(&self, other: &Self, [left, top]: [usize; 2]) -> f64 {
+        let (mut sums, mut count) = ([0_i64; 3], 0_i64);
+        for row in top..(top + BLOCK).min(self.side) {
+            for column in left..(left + BLOCK).min(self.side) {
+                let (own, theirs) = (self.at(column, row), other.at(column, row));
+                if own[3] == 0 || theirs[3] == 0 {
+                    continue;
+                }
+                count += 1;
+                for (k, sum) in sums.iter_mut().enumerate() {
+                    *sum += i64::from(own[k]) - i64::from(theirs[k]);
+                }
+            }
+        }
+        let largest = sums.into_iter().map(i64::abs).max().unwrap_or_default();
+        largest as f64 / count.max(1) as f64
+    }
+}
+
+/// Looks whether one of the eight places around fits better than the photo's own.
+fn look_at_place(id: TileId, files: &Picture<'_>, own: &Picture<'_>, findings: &mut Findings) {
+    let around = (-1..=1).flat_map(|south| (-1..=1).map(move |east| [east, south]));
+    let around = around.filter(|&place| place != [0, 0]);
+    let found = |place| files.difference(own, place).map(|difference| (difference, place));
+    let Some((here, _)) = found([0, 0]) else { return };
+    let best = around.filter_map(found).min_by(|(a, _), (b, _)| a.total_cmp(b));
+    let Some((moved, [east, south])) = best else { return };
+    findings.look(CheckId::PhotoPlace, moved >= BETTER * here - ROUNDING, || {
+        format!(
+            "the photo of tile {id} differs by {here:.1} grey levels, and by {moved:.1} when it is moved by {} texels east and {} south",
+            -east, -south
+        )
+    });
+}
+
+/// Looks whether colours are off by no more than coding the files' texels again loses.
+fn look_at_colours(
+    id: TileId,
+    quality: u8,
+    files: &Picture<'_>,
+    own: &Picture<'_>,
+    levels: u8,
+    findings: &mut Findings,
+) {
+    let again = Photo { levels, rgba: files.rgba.to_vec() };
+    let coded = encode_photo(id, &again, quality).ok().flatten();
+    // They have a photo; a quality that no coder has is no coding's loss.
+    let coded = coded.and_then(|section| section.photo(id).ok());
+    let coded = coded.as_ref().map(|photo| Picture { side: files.side, rgba: &photo.rgba });
+    let losses = |of: &Picture<'_>| {
+        [files.difference(of, [0, 0]).unwrap_or_default(), files.block_difference(of)]
+    };
+    let most = coded.as_ref().map_or([0.0; 2], losses).map(|loss| MORE_LOSS * loss + ROUNDING);
+    let found = losses(own);
+    for (what, found, most) in
+        [("", found[0], most[0]), ("the mean of a block of ", found[1], most[1])]
+    {
+        findings.look(CheckId::PhotoColours, found <= most, || {
+            format!("{what}the photo of tile {id} is off by {found:.1} grey levels, its coding allows {most:.1}")
+        });
     }
 }

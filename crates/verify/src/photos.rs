@@ -27,6 +27,7 @@ fn most_difference(quality: u8) -> f64 {
 }
 
 /// What is found in one tile.
+#[derive(Default)]
 struct Found {
     findings: Findings,
     /// Stored bytes of its photo; 0 without one.
@@ -83,18 +84,17 @@ fn look_at(
     id: TileId,
     record: PhotoRecord,
 ) -> Found {
-    let mut findings = Findings::default();
+    let mut found = Found::default();
+    let findings = &mut found.findings;
     // Tiles that cannot be read are told elsewhere.
-    let Some(payload) = package.tile(id).ok().flatten() else {
-        return Found { findings, bytes: 0 };
-    };
-    let bytes = payload_sizes(&payload, id).map_or(0, |sizes| sizes.photo.stored);
+    let Some(payload) = package.tile(id).ok().flatten() else { return found };
+    found.bytes = payload_sizes(&payload, id).map_or(0, |sizes| sizes.photo.stored);
     let photo = match decode_photo(&payload, id) {
         Ok(Some(photo)) => photo,
-        Ok(None) => return Found { findings, bytes },
+        Ok(None) => return found,
         Err(error) => {
             findings.look(CheckId::PhotoWhole, false, || error.to_string());
-            return Found { findings, bytes };
+            return found;
         }
     };
     drop(payload);
@@ -111,7 +111,7 @@ fn look_at(
             continue;
         };
         let shared = shared(&own, &texels(&beside), photo.tile_texels(), [east, south]);
-        look_alike(CheckId::PhotoSeams, &shared, most, &mut findings, || {
+        look_alike(CheckId::PhotoSeams, &shared, most, findings, || {
             format!("the photos of tiles {id} and {other}")
         });
     }
@@ -123,11 +123,11 @@ fn look_at(
         while inner.columns() > quadrant.columns() {
             inner = inner.halved();
         }
-        look_alike(CheckId::PhotoLevels, &[inner, quadrant], most, &mut findings, || {
+        look_alike(CheckId::PhotoLevels, &[inner, quadrant], most, findings, || {
             format!("the photos of tile {id} and its parent {parent}")
         });
     }
-    Found { findings, bytes }
+    found
 }
 
 /// A photo's texels; those without a photo have no colour.

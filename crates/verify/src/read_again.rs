@@ -1,6 +1,7 @@
-//! The extracts that a package was made from, read again for what it does not store.
+//! The extracts that a package was made from, read again for what it does not store, such as the names of what its lines bound.
 
-use corniche_osm::{Layers, read_extract};
+use corniche_areas::{ClassedLayer, LineNames};
+use corniche_osm::{ClassedLine, LayerSink, Layers, LineSummary, read_extract};
 use corniche_pieces::extract::{placed_reading::PlacedReading, reading_pool};
 use corniche_spec::{
     Observer,
@@ -62,4 +63,38 @@ fn read(
     })?;
     observer.end(Stage::Extract);
     Ok(())
+}
+
+/// Reads the extracts that a package was made from again, for the names of what the ways of a layer bound: of relations, and of closed ways.
+///
+/// # Errors
+/// When a file cannot be read, changes meanwhile, or they are not those of the build.
+pub fn line_names(
+    package: &FilePackage,
+    layer: ClassedLayer,
+    extract: &VerifyOsm,
+    threads: usize,
+    observer: &dyn Observer,
+) -> Result<LineNames, VerifyError> {
+    let mut names = LineNames::default();
+    let mut on_name = |way_id, class, name: &str| {
+        names.entry(way_id).or_default().entry(class).or_default().insert(name.to_owned());
+    };
+    let mut lines = Unneeded;
+    let layers = Layers {
+        lines: vec![(layer, &mut lines)],
+        line_names: Some(&mut on_name),
+        ..Layers::default()
+    };
+    read_again(package, (extract, layers), threads, observer)?;
+    Ok(names)
+}
+
+/// The package has the lines.
+struct Unneeded;
+
+impl LayerSink<ClassedLine, LineSummary> for Unneeded {
+    fn take(&mut self, _: ClassedLine) {}
+
+    fn end(&mut self, _: LineSummary) {}
 }

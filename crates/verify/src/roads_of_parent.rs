@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use corniche_geom::{LatticeBounds, LatticePoint, Work};
+use corniche_geom::{LatticeBounds, LatticePoint, TileId, Work};
 use corniche_spec::levels::Levels;
 use corniche_tileset::TilePayload;
 
@@ -34,8 +34,6 @@ pub(crate) fn verify(
     let (id, above) = (child.payload.id, parent.payload.id);
     let frame = levels.frame();
     let bounds = frame.tile_lattice_bounds(id);
-    let place = TilePlace::of(frame, above);
-    let own_place = TilePlace::of(frame, id);
     // Points on a border were made by cutting; the source does not have them.
     let is_inside = |point: LatticePoint| {
         let LatticeBounds { min, max } = bounds;
@@ -43,47 +41,40 @@ pub(crate) fn verify(
     };
 
     let work = Work::new(MOST_STEPS);
-    let is_within = || work.check().is_ok();
-    let tolerance = levels.simplify_tolerance_steps(above.z());
-    if tolerance <= levels.margin_steps(above.z()) as f64 {
-        let lines = sv_lines(parent.payload, place);
-        for road in &child.payload.roads_geo {
-            if !levels.shows(above.z(), road.class) {
-                continue;
-            }
-            let line = lines.get(&road.way_id);
-            let points = source_points(&road.line).filter(|&point| is_inside(point));
-            for point in points.take_while(|_| is_within()) {
-                let at = place.local(point);
-                if parent.ground.height_m(place.cells(at)).is_none() {
+    // Looks for points of a way of one tile beside the lines of the other, which has ground there.
+    let mut look =
+        |way_id: i64, points: &mut dyn Iterator<Item = LatticePoint>, in_other: &Lines| {
+            let line = in_other.by_way.get(&way_id);
+            let points = points.filter(|&point| is_inside(point));
+            for point in points.take_while(|_| work.check().is_ok()) {
+                let at = in_other.place.local(point);
+                if in_other.side.ground.height_m(in_other.place.cells(at)).is_none() {
                     continue;
                 }
-                let reach = tolerance + SAME_LINE_STEPS;
-                let is_there = line.is_some_and(|line| line.is_on(at, reach, &work));
+                let is_there = line.is_some_and(|line| line.is_on(at, in_other.reach, &work));
+                let [here, there] = in_other.names;
                 findings.look(CheckId::Shown, is_there, || {
-                    format!("way {} of tile {id} is not in tile {above} at {point:?}", road.way_id)
+                    format!("way {way_id} of tile {here} is not in tile {there} at {point:?}")
                 });
+            }
+        };
+    let reach = |level: u8| {
+        let tolerance = levels.simplify_tolerance_steps(level);
+        let is_known = tolerance <= levels.margin_steps(level) as f64;
+        is_known.then_some(tolerance + SAME_LINE_STEPS)
+    };
+    if let Some(reach) = reach(above.z()) {
+        let lines = Lines::of(parent, TilePlace::of(frame, above), reach, [id, above]);
+        for road in &child.payload.roads_geo {
+            if levels.shows(above.z(), road.class) {
+                look(road.way_id, &mut source_points(&road.line), &lines);
             }
         }
     }
-
-    let tolerance = levels.simplify_tolerance_steps(id.z());
-    if tolerance <= levels.margin_steps(id.z()) as f64 {
-        let lines = sv_lines(child.payload, own_place);
+    if let Some(reach) = reach(id.z()) {
+        let lines = Lines::of(child, TilePlace::of(frame, id), reach, [above, id]);
         for road in &parent.payload.roads_sv {
-            let line = lines.get(&road.way_id);
-            let points = road.line.points.iter().filter(|&&point| is_inside(point));
-            for &point in points.take_while(|_| is_within()) {
-                let at = own_place.local(point);
-                if child.ground.height_m(own_place.cells(at)).is_none() {
-                    continue;
-                }
-                let reach = tolerance + SAME_LINE_STEPS;
-                let is_there = line.is_some_and(|line| line.is_on(at, reach, &work));
-                findings.look(CheckId::Shown, is_there, || {
-                    format!("way {} of tile {above} is not in tile {id} at {point:?}", road.way_id)
-                });
-            }
+            look(road.way_id, &mut road.line.points.iter().copied(), &lines);
         }
     }
     if let Err(error) = work.check() {
@@ -91,10 +82,25 @@ pub(crate) fn verify(
     }
 }
 
-fn sv_lines(payload: &TilePayload, place: TilePlace) -> BTreeMap<i64, NearSegments> {
-    let mut lines: BTreeMap<i64, Vec<Segment>> = BTreeMap::new();
-    for road in &payload.roads_sv {
-        lines.entry(road.way_id).or_default().extend(segments(&road.line.points, place));
+/// The SV lines of a tile, beside which points of the other one are looked for.
+struct Lines<'a> {
+    side: &'a Side<'a>,
+    place: TilePlace,
+    by_way: BTreeMap<i64, NearSegments>,
+    /// How far beside them points may lie, steps.
+    reach: f64,
+    /// The tile that has the points, and the one that has the lines.
+    names: [TileId; 2],
+}
+
+impl<'a> Lines<'a> {
+    fn of(side: &'a Side<'a>, place: TilePlace, reach: f64, names: [TileId; 2]) -> Self {
+        let mut by_way: BTreeMap<i64, Vec<Segment>> = BTreeMap::new();
+        for road in &side.payload.roads_sv {
+            by_way.entry(road.way_id).or_default().extend(segments(&road.line.points, place));
+        }
+        let lines = by_way.into_iter();
+        let by_way = lines.map(|(way_id, own)| (way_id, NearSegments::new(own))).collect();
+        Self { side, place, by_way, reach, names }
     }
-    lines.into_iter().map(|(way_id, segments)| (way_id, NearSegments::new(segments))).collect()
 }

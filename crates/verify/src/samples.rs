@@ -40,19 +40,18 @@ pub(crate) fn measure(
     let manifest = tiles.package.manifest();
     let ranges = dem.sample_ranges(plan)?;
     let mut sums = none(manifest);
-    observer.begin(Stage::Samples, Some(ranges.len() as u64));
-    workers::in_order_unless_cancelled(
-        observer,
+    workers::side_by_side(
+        (observer, Stage::Samples),
         settings.threads,
-        ranges.len(),
+        &ranges,
         || {
             Ok::<_, VerifyError>((
                 dem.reader(plan),
                 vec![None; usize::from(manifest.frame.max_level()) + 1],
             ))
         },
-        |(reader, last), index| {
-            let block = reader.used_samples(&ranges[index])?;
+        |(reader, last), range| {
+            let block = reader.used_samples(range)?;
             let mut found = none(manifest);
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
                 // The point of the lattice is taken, as in the build: at the boundary of the ground half a millimetre decides
@@ -79,11 +78,9 @@ pub(crate) fn measure(
         },
         |_, found| {
             merge(&mut sums, &found);
-            observer.advance(Stage::Samples, 1);
             Ok(())
         },
     )?;
-    observer.end(Stage::Samples);
     Ok(sums)
 }
 

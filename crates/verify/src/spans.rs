@@ -6,6 +6,7 @@ use std::{
 };
 
 use corniche_geom::{LatticeBounds, LatticePoint, TileId, Work};
+use corniche_pieces::layers::tile_section::SectionOfTile;
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_spans::{SpanKind, SpanReason};
 use corniche_spec::Observer;
@@ -18,8 +19,8 @@ use corniche_tin::{Placement, Surface};
 use super::{
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
+    each_tile::{OfTile, look_at_layer, recorded},
     error::VerifyError,
-    layer_sums::{Counts, OfTile, look_at_layer},
     near_index::NearIndex,
     span_order::{self, OrderedCrossing, Piece},
     tile_place::TilePlace,
@@ -56,7 +57,7 @@ pub(crate) fn verify(
         "spans are counted and were not asked for, or the other way round".to_owned()
     });
     let levels = record.iter().flat_map(|record| &record.levels);
-    let recorded = (CheckId::SpanSums, levels.map(Counts::recorded).collect());
+    let recorded = (CheckId::SpanSums, levels.map(recorded).collect());
     let ends: Mutex<EndsByPlace> = Mutex::default();
     let crossings: Mutex<Vec<(TileId, OrderedCrossing)>> = Mutex::default();
     // Heights of both are rounded away from the ground.
@@ -184,7 +185,7 @@ fn look_at(
     }
     let points = runs.iter().map(|run| run.points.len() as u64).sum();
     let bytes = payload_sizes(&bytes, id).map_or(0, |sizes| sizes.spans.stored);
-    found.counts = Counts { tiles: 1, parts: runs.len() as u64, points, bytes };
+    found.counts = SectionOfTile { parts: runs.len() as u64, points, bytes };
     found
 }
 

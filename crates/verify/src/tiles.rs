@@ -1,25 +1,27 @@
-//! Checks every tile by itself, then compares all tiles with their neighbours, their parents and the manifest.
+//! Checks every tile by itself and beside the tiles above it, then compares all tiles with their neighbours, their parents and the manifest.
 
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 use corniche_roads::Structure;
 use corniche_spec::{Observer, levels::Levels};
-use corniche_tileset::{Manifest, SvTail, SvTails};
-use corniche_work::{Stage, workers};
+use corniche_tileset::{Manifest, SvTail, SvTails, Terrain};
 
 use super::{
-    attributes::Ways,
+    attributes::{self, WayFacts, Ways},
     checks::{CheckId, Findings},
     decoded_tiles::DecodedTiles,
-    each_tile::check_readable,
+    derived_records::{CUT_M, LENGTH_SHARE},
+    each_tile::each_tile,
     error::VerifyError,
-    manifest_sums::{CUT_M, LENGTH_SHARE},
-    one_tile::{Found, look_at},
+    geo_against_sv, relief,
     report::{GapFigures, VerifyReport},
-    roads_on_tin::{RoadLengths, counts_for_sums},
+    roads_of_parent,
+    roads_on_tin::{self, RoadLengths, counts_for_sums},
     seams,
+    tile_place::TilePlace,
     tile_sums::{Kept, TileSums, check_growth, check_levels},
+    tin_against_parent::{self, Level},
 };
 
 pub(crate) fn verify(
@@ -33,7 +35,6 @@ pub(crate) fn verify(
     // `None` if the record is not valid; then the check `levels.derived` is broken.
     let levels = Levels::recorded(manifest);
     let ids = package.tile_ids()?;
-    observer.begin(Stage::Verify, Some(ids.len() as u64));
     let mut findings = Findings::default();
     let mut kept = BTreeMap::new();
     let mut gaps: BTreeMap<u8, GapFigures> = BTreeMap::new();
@@ -41,18 +42,12 @@ pub(crate) fn verify(
     let mut ways = Ways::default();
     let mut sums: BTreeMap<u8, TileSums> = BTreeMap::new();
     let mut sv_tails = SvTails::new();
-    workers::in_order_unless_cancelled(
-        observer,
+    each_tile(
+        package,
         threads,
-        ids.len(),
-        || Ok::<_, VerifyError>(()),
-        |(), index| {
-            let found = look_at(tiles, ids[index], levels.as_ref());
-            check_readable(package)?;
-            Ok(found)
-        },
-        |index, found: Found| {
-            let id = ids[index];
+        observer,
+        |id| Ok(look_at(tiles, id, levels.as_ref())),
+        |id, found: Found| {
             findings.look(CheckId::Whole, found.damage.is_none(), || {
                 found.damage.clone().unwrap_or_default()
             });
@@ -71,11 +66,8 @@ pub(crate) fn verify(
             sums.entry(id.z()).or_default().add(found.sums);
             sv_tails.add(id, found.sv_tail_bytes);
             kept.extend(found.kept.map(|tile| (id, tile)));
-            observer.advance(Stage::Verify, 1);
-            Ok(())
         },
     )?;
-    observer.end(Stage::Verify);
     let borders = check_seams(&kept, &mut findings);
     check_nesting(&kept, &mut findings);
     check_heights(manifest.vertical.range_m, &kept, &mut findings);
@@ -188,4 +180,105 @@ fn check_nesting(kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) {
             && above.height_range_m[1] >= tile.height_range_m[1];
         findings.look(CheckId::Nested, nested, || format!("tile {id} exceeds its parent {parent}"));
     }
+}
+
+/// What a worker found in a tile.
+#[derive(Default)]
+pub(crate) struct Found {
+    pub kept: Option<Kept>,
+    pub(crate) findings: Findings,
+    pub gaps: GapFigures,
+    pub(crate) lengths: RoadLengths,
+    pub(crate) ways: Vec<(i64, WayFacts)>,
+    pub sums: TileSums,
+    pub(crate) sv_tail_bytes: u64,
+    pub(crate) damage: Option<String>,
+}
+
+pub(crate) fn look_at(tiles: &DecodedTiles<'_>, id: TileId, levels: Option<&Levels>) -> Found {
+    let manifest = tiles.package.manifest();
+    let quantum_m = manifest.vertical.quantum_m;
+    let tile = tiles.of(id);
+    let (payload, sizes) = match &tile.whole {
+        Ok(read) => read,
+        Err(damage) => return Found { damage: Some(damage.clone()), ..Found::default() },
+    };
+    let mut findings = Findings::default();
+    let least_class = manifest.levels.get(usize::from(id.z())).and_then(|level| level.least_class);
+    let ways = attributes::of_tile(payload, least_class, &mut findings);
+    roads_on_tin::verify_order(payload, &mut findings);
+    let bounds = manifest.frame.tile_lattice_bounds(id);
+    let sums = TileSums::of(payload, sizes, bounds);
+    let mut found = Found { ways, sums, sv_tail_bytes: sizes.sv_tail, ..Found::default() };
+    let Some(terrain) = &payload.terrain else {
+        let bare = payload.roads_geo.is_empty() && payload.roads_sv.is_empty();
+        findings.look(CheckId::OnTin, bare, || format!("tile {id} has roads but no ground"));
+        return Found { findings, ..found };
+    };
+    let place = TilePlace::of(&manifest.frame, id);
+    let ground = &*tiles.ground(id);
+    let on_tin =
+        roads_on_tin::verify_on_tin(payload, &terrain.tin, ground, manifest, &mut findings);
+    (found.gaps, found.lengths) = (on_tin.gaps, on_tin.lengths);
+    check_vertices(id, terrain, quantum_m, &mut findings);
+    let has_relief = payload.relief.is_some();
+    let settings = &manifest.settings;
+    let wants_relief = settings.relief.has(id.z(), manifest.frame.max_level());
+    findings.look(CheckId::ReliefThere, has_relief == wants_relief, || {
+        let found = if has_relief { "a" } else { "no" };
+        format!("tile {id} has {found} relief; the settings say {}", settings.relief.name())
+    });
+    if let Some(levels) = levels {
+        let margin_steps = levels.margin_steps(id.z());
+        let view = geo_against_sv::View { payload, ground, place, margin_steps, quantum_m };
+        geo_against_sv::verify_lines(&view, &on_tin.positions, &mut findings);
+        geo_against_sv::verify_ranges(&view, &mut findings);
+        let parent = id.parent().map(|parent| tiles.of(parent));
+        let parent = parent.as_ref().and_then(|parent| parent.payload());
+        if let Some(parent) = parent.filter(|parent| parent.terrain.is_some()) {
+            let ground_above = &*tiles.ground(parent.id);
+            let above = roads_of_parent::Side { payload: parent, ground: ground_above };
+            let own = roads_of_parent::Side { payload, ground };
+            roads_of_parent::verify(&own, &above, levels, &mut findings);
+        }
+    }
+    if id.z() == manifest.frame.max_level() {
+        check_ancestors(tiles, id, &mut findings);
+    }
+    found.kept = Some(Kept {
+        vertices: terrain.tin.vertices().len() as u64,
+        triangles: terrain.tin.triangles().len() as u64,
+        geometric_error_m: terrain.geometric_error_m,
+        height_range_m: terrain.height_range_m,
+        borders: seams::borders(&terrain.tin),
+        relief_borders: payload.relief.as_ref().map(relief::borders),
+    });
+    Found { findings, ..found }
+}
+
+/// Looks at the heights of a TIN's vertices.
+fn check_vertices(id: TileId, terrain: &Terrain, quantum_m: f64, findings: &mut Findings) {
+    let [low_m, high_m] = terrain.height_range_m;
+    // The height of a vertex is that of a node, rounded to the quantum.
+    let range_m = low_m - quantum_m / 2.0..=high_m + quantum_m / 2.0;
+    for vertex in terrain.tin.vertices() {
+        let height_m = f64::from(vertex.height_q) * quantum_m;
+        findings.look(CheckId::Vertices, range_m.contains(&height_m), || {
+            format!("tile {id} has a vertex at {height_m} m, its range is {low_m} to {high_m} m")
+        });
+    }
+}
+
+/// Compares the TIN of a finest tile, and those above it, each with that of its parent. Tiles above that have no ground or cannot be read
+/// are passed over; the latter are told when they are looked at themselves.
+fn check_ancestors(tiles: &DecodedTiles<'_>, id: TileId, findings: &mut Findings) {
+    let levels: Vec<Level> = (0..=id.z())
+        .rev()
+        .filter_map(|level| {
+            let id = id.ancestor(level);
+            let error_m = tiles.of(id).payload()?.terrain.as_ref()?.geometric_error_m;
+            Some(Level { id, ground: tiles.ground(id), error_m })
+        })
+        .collect();
+    tin_against_parent::verify(&tiles.package.manifest().frame, &levels, findings);
 }

@@ -1,10 +1,11 @@
-//! With which inputs a package is verified, and how.
+//! With which inputs a package is verified, and how; files that were found to be those of the build.
 
 use std::path::PathBuf;
 
 use corniche_areas::AreaTable;
 use corniche_gis::Polygon;
 use corniche_roads::FrcTable;
+use corniche_spec::inputs::Inputs;
 
 /// The inputs with which a package is verified.
 #[derive(Debug, Clone)]
@@ -32,4 +33,11 @@ pub struct VerifyOsm {
     pub areas: Option<AreaTable>,
     /// Memory for sorting roads and areas by tile, bytes.
     pub memory_bytes: u64,
+}
+
+/// Files that are those of the build.
+pub(crate) struct GivenFiles<T> {
+    /// The files, to see at the end that they did not change.
+    pub inputs: Inputs,
+    pub found: T,
 }

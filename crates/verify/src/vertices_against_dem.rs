@@ -7,11 +7,11 @@ use corniche_ground::heights::pyramid::Pyramid;
 use corniche_spec::Observer;
 use corniche_tileset::Terrain;
 use corniche_tin::normal_shift;
-use corniche_work::{Stage, workers};
 
 use super::{
     checks::{CheckId, Findings, as_json},
     decoded_tiles::DecodedTiles,
+    each_tile::each_tile,
     error::VerifyError,
     relief,
     report::VerifyReport,
@@ -59,21 +59,8 @@ pub(crate) fn verify(
     findings.look(CheckId::DemCounts, same_range, || {
         format!("heights from {said_m:?} are recorded, {found_m:?} were found")
     });
-    let ids = tiles.package.tile_ids()?;
-    observer.begin(Stage::Verify, Some(ids.len() as u64));
-    workers::in_order_unless_cancelled(
-        observer,
-        threads,
-        ids.len(),
-        || Ok(()),
-        |(), index| look_at(tiles, &pyramid, ids[index]),
-        |_, found: Findings| {
-            findings.merge(found);
-            observer.advance(Stage::Verify, 1);
-            Ok(())
-        },
-    )?;
-    observer.end(Stage::Verify);
+    let look_at = |id| look_at(tiles, &pyramid, id);
+    each_tile(tiles.package, threads, observer, look_at, |_, found| findings.merge(found))?;
     report.checks.extend(findings);
     Ok(())
 }

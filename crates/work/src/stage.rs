@@ -20,108 +20,78 @@ impl Unit {
     }
 }
 
-/// A stage, in the order in which those of one command come.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Stage {
+/// Tiles are what most stages count.
+const TILES: Unit = Unit::Things("tiles");
+
+/// Declares the stages in their order: for each its name for programs, its name for people, and what it counts.
+macro_rules! stages {
+    ($($(#[doc = $doc:literal])+ $stage:ident = $id:literal, $title:literal, $unit:expr;)+) => {
+        /// A stage, in the order in which those of one command come.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum Stage {
+            $($(#[doc = $doc])+ $stage,)+
+        }
+
+        impl Stage {
+            /// All stages, in their order.
+            pub const ALL: &'static [Self] = &[$(Self::$stage),+];
+
+            const fn row(self) -> (&'static str, &'static str, Unit) {
+                match self {
+                    $(Self::$stage => ($id, $title, $unit),)+
+                }
+            }
+        }
+    };
+}
+
+stages! {
     /// Hash the input files.
-    Hash,
+    Hash = "hash", "hashing inputs", Unit::Bytes;
     /// Read the extract: ways and nodes of all layers.
-    Extract,
+    Extract = "extract", "reading extract", Unit::Bytes;
     /// Split areas by tile.
-    MapAreas,
+    MapAreas = "areas", "splitting areas", Unit::Things("objects");
     /// Split boundaries by tile.
-    Boundaries,
+    Boundaries = "boundaries", "splitting boundaries", Unit::Things("ways");
     /// Split roads by tile.
-    Roads,
+    Roads = "roads", "splitting roads", Unit::Things("ways");
     /// Read the DEM, reproject it, fill its voids, make the level rasters.
-    Heights,
+    // Finest tiles of one window of the DEM.
+    Heights = "heights", "reading heights", Unit::Things("areas");
     /// Read photos.
-    Photos,
+    Photos = "photos", "reading photos", TILES;
     /// Triangulate the tiles of all levels but the finest.
-    CoarseTins,
+    CoarseTins = "coarse-tins", "meshing coarse levels", TILES;
     /// Measure every finest tile, and the coarser ones above it, against the full resolution.
-    Deviations,
+    Deviations = "deviations", "measuring errors", TILES;
     /// Measure every level at the DEM's own samples, where they are not the nodes.
-    Samples,
+    Samples = "samples", "measuring at samples", Unit::Things("blocks");
     /// Make the tiles: clip, drape and encode.
-    Tiles,
+    Tiles = "tiles", "making tiles", TILES;
     /// Make the tiles of all levels but the finest.
-    CoarseTiles,
+    CoarseTiles = "coarse-tiles", "making coarse tiles", TILES;
     /// Solve the heights of bridges and tunnels, and cut them by tile.
-    Spans,
+    Spans = "spans", "solving bridges", TILES;
     /// Write the package.
-    Package,
+    Package = "package", "writing package", TILES;
     /// Check a package.
-    Verify,
+    Verify = "verify", "verifying", TILES;
     /// An export reads tiles: it sorts what they hold by way, or makes what is written of them.
-    ExportTiles,
+    ExportTiles = "export-tiles", "reading tiles", TILES;
     /// An export makes blocks of a raster.
-    ExportBlocks,
+    ExportBlocks = "export-blocks", "writing blocks", Unit::Things("blocks");
     /// An export reads heights along the roads of an extract.
-    ExportChains,
+    ExportChains = "export-chains", "heights along roads", Unit::Things("chains");
     /// An export joins the pieces of each way and writes features.
-    ExportFeatures,
+    ExportFeatures = "export-features", "writing features", Unit::Things("pieces");
     /// Compare roads with an image.
-    Match,
+    Match = "match", "comparing tiles", TILES;
     /// Draw the frames of a flight, in one way of drawing.
-    Fly,
+    Fly = "fly", "drawing frames", Unit::Things("frames");
 }
 
 impl Stage {
-    /// All stages, in their order.
-    pub const ALL: [Self; 21] = [
-        Self::Hash,
-        Self::Extract,
-        Self::MapAreas,
-        Self::Boundaries,
-        Self::Roads,
-        Self::Heights,
-        Self::Photos,
-        Self::CoarseTins,
-        Self::Deviations,
-        Self::Samples,
-        Self::Tiles,
-        Self::CoarseTiles,
-        Self::Spans,
-        Self::Package,
-        Self::Verify,
-        Self::ExportTiles,
-        Self::ExportBlocks,
-        Self::ExportChains,
-        Self::ExportFeatures,
-        Self::Match,
-        Self::Fly,
-    ];
-
-    /// Its name for programs, its name for people, and what it counts.
-    const fn row(self) -> (&'static str, &'static str, Unit) {
-        const TILES: Unit = Unit::Things("tiles");
-        match self {
-            Self::Hash => ("hash", "hashing inputs", Unit::Bytes),
-            Self::Extract => ("extract", "reading extract", Unit::Bytes),
-            Self::MapAreas => ("areas", "splitting areas", Unit::Things("objects")),
-            Self::Boundaries => ("boundaries", "splitting boundaries", Unit::Things("ways")),
-            Self::Roads => ("roads", "splitting roads", Unit::Things("ways")),
-            // Finest tiles of one window of the DEM.
-            Self::Heights => ("heights", "reading heights", Unit::Things("areas")),
-            Self::Photos => ("photos", "reading photos", TILES),
-            Self::CoarseTins => ("coarse-tins", "meshing coarse levels", TILES),
-            Self::Deviations => ("deviations", "measuring errors", TILES),
-            Self::Samples => ("samples", "measuring at samples", Unit::Things("blocks")),
-            Self::Tiles => ("tiles", "making tiles", TILES),
-            Self::CoarseTiles => ("coarse-tiles", "making coarse tiles", TILES),
-            Self::Spans => ("spans", "solving bridges", Unit::Things("tiles")),
-            Self::Package => ("package", "writing package", TILES),
-            Self::Verify => ("verify", "verifying", TILES),
-            Self::ExportTiles => ("export-tiles", "reading tiles", TILES),
-            Self::ExportBlocks => ("export-blocks", "writing blocks", Unit::Things("blocks")),
-            Self::ExportChains => ("export-chains", "heights along roads", Unit::Things("chains")),
-            Self::ExportFeatures => ("export-features", "writing features", Unit::Things("pieces")),
-            Self::Match => ("match", "comparing tiles", TILES),
-            Self::Fly => ("fly", "drawing frames", Unit::Things("frames")),
-        }
-    }
-
     /// The stage's name for programs: small letters and hyphens. It does not change.
     #[must_use]
     pub const fn id(self) -> &'static str {

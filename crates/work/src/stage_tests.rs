@@ -7,7 +7,7 @@ use super::*;
 /// The match has no `_`, so a new stage does not compile here until it has a place in the list.
 #[test]
 fn every_stage_is_listed_once_in_order() {
-    for (place, stage) in Stage::ALL.into_iter().enumerate() {
+    for (place, stage) in Stage::ALL.iter().copied().enumerate() {
         let expected = match stage {
             Stage::Hash => 0,
             Stage::Extract => 1,
@@ -38,8 +38,8 @@ fn every_stage_is_listed_once_in_order() {
 
 #[test]
 fn names_of_stages_differ_and_fit_their_column() {
-    let ids: BTreeSet<&str> = Stage::ALL.into_iter().map(Stage::id).collect();
-    let titles: BTreeSet<&str> = Stage::ALL.into_iter().map(Stage::title).collect();
+    let ids: BTreeSet<&str> = Stage::ALL.iter().copied().map(Stage::id).collect();
+    let titles: BTreeSet<&str> = Stage::ALL.iter().copied().map(Stage::title).collect();
     assert_eq!((ids.len(), titles.len()), (Stage::ALL.len(), Stage::ALL.len()));
     for id in ids {
         assert!(id.chars().all(|c| c.is_ascii_lowercase() || c == '-'), "{id}");

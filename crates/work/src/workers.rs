@@ -8,23 +8,60 @@ use std::{
 
 use crate::{Interrupted, Observer, Stage};
 
-/// Does the same as [`in_order`], and asks `observer` before each item whether the run is cancelled.
+/// Works on each item with [`in_order`], and asks `observer` before each whether the run is cancelled.
 ///
 /// # Errors
 /// Those of [`in_order`], or [`Interrupted`].
-pub fn in_order_unless_cancelled<S, R: Send, E: Send + From<Interrupted>>(
+pub fn in_order_unless_cancelled<I: Sync, S, R: Send, E: Send + From<Interrupted>>(
     observer: &dyn Observer,
     threads: usize,
-    count: usize,
+    items: &[I],
     start: impl Fn() -> Result<S, E> + Sync,
-    work: impl Fn(&mut S, usize) -> Result<R, E> + Sync,
-    write: impl FnMut(usize, R) -> Result<(), E>,
+    work: impl Fn(&mut S, &I) -> Result<R, E> + Sync,
+    mut take: impl FnMut(&I, R) -> Result<(), E>,
 ) -> Result<(), E> {
-    let work = |state: &mut S, index| {
+    let work = |state: &mut S, index: usize| {
         observer.check()?;
-        work(state, index)
+        work(state, &items[index])
     };
-    in_order(threads, count, start, work, write)
+    in_order(threads, items.len(), start, work, |index, made| take(&items[index], made))
+}
+
+/// Works on the items of a stage that has begun, and tells `observer` how far it is. What is made comes to `take` in the items' order.
+///
+/// # Errors
+/// Those of [`in_order_unless_cancelled`].
+pub fn advance<I: Sync, S, R: Send, E: Send + From<Interrupted>>(
+    (observer, stage): (&dyn Observer, Stage),
+    threads: usize,
+    items: &[I],
+    start: impl Fn() -> Result<S, E> + Sync,
+    work: impl Fn(&mut S, &I) -> Result<R, E> + Sync,
+    mut take: impl FnMut(&I, R) -> Result<(), E>,
+) -> Result<(), E> {
+    in_order_unless_cancelled(observer, threads, items, start, work, |item, made| {
+        take(item, made)?;
+        observer.advance(stage, 1);
+        Ok(())
+    })
+}
+
+/// Does the same as [`advance`] for a whole stage, which begins and ends with it.
+///
+/// # Errors
+/// Those of [`in_order_unless_cancelled`].
+pub fn side_by_side<I: Sync, S, R: Send, E: Send + From<Interrupted>>(
+    (observer, stage): (&dyn Observer, Stage),
+    threads: usize,
+    items: &[I],
+    start: impl Fn() -> Result<S, E> + Sync,
+    work: impl Fn(&mut S, &I) -> Result<R, E> + Sync,
+    take: impl FnMut(&I, R) -> Result<(), E>,
+) -> Result<(), E> {
+    observer.begin(stage, Some(items.len() as u64));
+    advance((observer, stage), threads, items, start, work, take)?;
+    observer.end(stage);
+    Ok(())
 }
 
 /// Makes something of each item of a stage that has begun, and tells `observer` how far it is. What is made comes in the items' order.
@@ -32,25 +69,17 @@ pub fn in_order_unless_cancelled<S, R: Send, E: Send + From<Interrupted>>(
 /// # Errors
 /// Those of [`in_order_unless_cancelled`].
 pub fn make_all<I: Sync, S, T: Send, E: Send + From<Interrupted>>(
-    (observer, stage): (&dyn Observer, Stage),
+    told: (&dyn Observer, Stage),
     threads: usize,
     items: &[I],
     start: impl Fn() -> Result<S, E> + Sync,
     work: impl Fn(&mut S, &I) -> Result<T, E> + Sync,
 ) -> Result<Vec<T>, E> {
     let mut made = Vec::with_capacity(items.len());
-    in_order_unless_cancelled(
-        observer,
-        threads,
-        items.len(),
-        start,
-        |state, index| work(state, &items[index]),
-        |_, one| {
-            made.push(one);
-            observer.advance(stage, 1);
-            Ok(())
-        },
-    )?;
+    advance(told, threads, items, start, work, |_, one| {
+        made.push(one);
+        Ok(())
+    })?;
     Ok(made)
 }
 
@@ -69,7 +98,7 @@ pub fn make_missing<S, T: Sync, E: Send + From<Interrupted>>(
 ) -> Result<(), E> {
     observer.begin(stage, Some(all as u64));
     observer.already(stage, (all - missing.len()) as u64);
-    make_all((observer, stage), threads, missing, start, work)?;
+    advance((observer, stage), threads, missing, start, work, |_, ()| Ok(()))?;
     observer.end(stage);
     Ok(())
 }

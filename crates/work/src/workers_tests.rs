@@ -93,12 +93,13 @@ fn a_run_that_is_cancelled_writes_the_first_results_and_no_other() {
     for threads in [1, 2, 8] {
         let observer = CancelAfter(AtomicUsize::new(20));
         let mut written = Vec::new();
+        let items: Vec<usize> = (0..100).collect();
         let result = in_order_unless_cancelled(
             &observer,
             threads,
-            100,
+            &items,
             || Ok::<_, Interrupted>(()),
-            |(), index| Ok(index),
+            |(), index| Ok(*index),
             |_, index| {
                 written.push(index);
                 Ok(())

@@ -104,7 +104,7 @@ impl Pyramid<'_> {
     /// # Errors
     /// See [`GroundError`].
     pub fn tile(&self, id: TileId) -> Result<Option<HeightGrid>, GroundError> {
-        rasters::of_any_level(self.store, &self.data(), id)
+        rasters::of_any_level(self.store, &self.data(), id, 1)
     }
 }
 

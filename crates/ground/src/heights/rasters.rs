@@ -44,19 +44,6 @@ pub fn get(
     }
 }
 
-/// The nodes of any tile, borders included; `None` where it has no height, and beside the data.
-fn own_nodes(
-    store: &dyn Artifacts,
-    data: &DataTiles,
-    id: TileId,
-) -> Result<Option<HeightGrid>, GroundError> {
-    if data.contains(id) {
-        Ok(FinestHeights::get(store, id)?.map(|heights| heights.with_halo(0)))
-    } else {
-        get(store, data, id)
-    }
-}
-
 /// Makes a tile's raster from the heights of its children.
 ///
 /// # Errors
@@ -69,7 +56,7 @@ pub fn put_from_children(
     let half = TILE_CELLS as usize / 2;
     let mut heights_m = vec![f32::NAN; TILE_NODES * TILE_NODES];
     for child in id.children() {
-        let Some(raster) = own_nodes(store, data, child)? else { continue };
+        let Some(raster) = of_any_level(store, data, child, 0)? else { continue };
         let (left, top) = ((child.x() % 2) as usize * half, (child.y() % 2) as usize * half);
         for row in 0..=half {
             for column in 0..=half {
@@ -121,15 +108,18 @@ pub fn with_halo(
     Ok(Some(HeightGrid::new(side, side, heights_m)))
 }
 
-/// The heights of any tile with one node of halo; `None` where the tile has no height, and beside the data.
+/// The heights of any tile with so many nodes of halo; `None` where the tile has no height, and beside the data.
 pub(crate) fn of_any_level(
     store: &dyn Artifacts,
     data: &DataTiles,
     id: TileId,
+    halo: usize,
 ) -> Result<Option<HeightGrid>, GroundError> {
-    if data.contains(id) {
-        Ok(FinestHeights::get(store, id)?.map(|heights| heights.with_halo(1)))
-    } else {
-        with_halo(store, data, id, 1)
+    match halo {
+        _ if data.contains(id) => {
+            Ok(FinestHeights::get(store, id)?.map(|heights| heights.with_halo(halo)))
+        }
+        0 => get(store, data, id),
+        _ => with_halo(store, data, id, halo),
     }
 }

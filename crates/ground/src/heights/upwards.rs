@@ -25,10 +25,10 @@ pub fn make_missing(
         workers::in_order_unless_cancelled(
             observer,
             threads,
-            ids.len(),
-            || Ok(()),
-            |(), index| make(ids[index]),
-            |_, ()| Ok::<_, GroundError>(()),
+            &ids,
+            || Ok::<_, GroundError>(()),
+            |(), &id| make(id),
+            |_, ()| Ok(()),
         )?;
     }
     Ok(())

@@ -7,6 +7,7 @@ use corniche_spec::{
     data_tiles::DataTiles,
 };
 use corniche_store::Artifacts;
+use corniche_tileset::PHOTO_BORDER;
 
 use crate::GroundError;
 
@@ -20,6 +21,13 @@ pub const SIDE: usize = TILE_CELLS as usize;
 pub fn put(store: &dyn Artifacts, id: TileId, raster: &Texels) -> Result<(), GroundError> {
     let bytes = if raster.is_empty() { &[][..] } else { raster.rgba() };
     Ok(store.put(Kind::PhotoRaster.of_tile(id), bytes)?)
+}
+
+/// The raster of a finest tile, of its texels with the border that tiles have, so many levels finer than its cells.
+#[must_use]
+pub fn of_texels(texels: &Texels, levels: u8) -> Texels {
+    let own = texels.part([PHOTO_BORDER; 2], [SIDE << levels; 2]);
+    (0..levels).fold(own, |finer, _| finer.halved())
 }
 
 /// The error for what was not made of a tile's photo.

@@ -4,10 +4,10 @@ use corniche_geom::{GridFrame, TileId};
 use corniche_photo::{PhotoReader, Texels};
 use corniche_spec::{artifacts::Kind, data_tiles::DataTiles};
 use corniche_store::Artifacts;
-use corniche_tileset::{PHOTO_BORDER, Photo, PhotoSection, encode_photo, photo_section};
+use corniche_tileset::{PHOTO_BORDER, Photo, Section, encode_photo, photo_section};
 
 use super::{
-    rasters::{self, SIDE},
+    rasters,
     source::{OpenedPhotos, PhotoSource},
 };
 use crate::{GroundError, TerrainError, terrain::ground::GroundSource};
@@ -53,10 +53,7 @@ pub fn make_finest(
     }
     let texels = reader.window(photos.grid.texels().tile(id, PHOTO_BORDER))?;
     let levels = photos.levels();
-    let mut raster = texels.part([PHOTO_BORDER; 2], [SIDE << levels; 2]);
-    for _ in 0..levels {
-        raster = raster.halved();
-    }
+    let raster = rasters::of_texels(&texels, levels);
     match encode(id, levels, texels, photos.quality)? {
         Some(section) => store.put(key, section.bytes())?,
         None => return none(),
@@ -73,7 +70,7 @@ pub fn of_tile(
     textures: TextureStore<'_>,
     id: TileId,
     earlier: Option<&[u8]>,
-) -> Result<Option<PhotoSection>, GroundError> {
+) -> Result<Option<Section>, GroundError> {
     match textures.photo {
         PhotoSource::Nothing => Ok(None),
         PhotoSource::Files(photos) => of_files(textures, photos, id),
@@ -96,12 +93,12 @@ fn of_files(
     textures: TextureStore<'_>,
     photos: &OpenedPhotos,
     id: TileId,
-) -> Result<Option<PhotoSection>, GroundError> {
+) -> Result<Option<Section>, GroundError> {
     let store = textures.store;
     if id.z() == textures.frame.max_level() {
         let bytes = store.get(Kind::PhotoTexture.of_tile(id))?;
         let bytes = bytes.ok_or_else(|| rasters::missing(id))?;
-        return Ok((!bytes.is_empty()).then(|| PhotoSection::from_bytes(bytes)));
+        return Ok((!bytes.is_empty()).then(|| Section::of_photo(bytes)));
     }
     let levels = photos.record().levels_on(id.z(), textures.frame.max_level());
     // Texels of children are half a cell.
@@ -118,7 +115,7 @@ fn encode(
     levels: u8,
     texels: Texels,
     quality: u8,
-) -> Result<Option<PhotoSection>, GroundError> {
+) -> Result<Option<Section>, GroundError> {
     let photo = Photo { levels, rgba: texels.into_rgba() };
     Ok(encode_photo(id, &photo, quality)?)
 }

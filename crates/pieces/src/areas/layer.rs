@@ -1,26 +1,142 @@
-//! The areas of the extract: for each tile of each level, the section with what lies in it.
+//! The areas of the extract: split by tile, and for each tile of each level the section with what lies in it.
 
-use corniche_areas::{Area, AreaClass, AreaObject, OutlineError, Polygon};
-use corniche_geom::{LatticePoint, TileId};
+use corniche_areas::{
+    Area, AreaClass, AreaObject, Axis, OutlineError, Polygon, coarsen, cut_out, divide_all,
+    intersection,
+};
+use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, LatticeRegion, TileId};
 use corniche_osm::{AreaLoss, AreaSummary};
-use corniche_spec::{Defect, artifacts::damaged};
+use corniche_spec::{Defect, artifacts::damaged, data_tiles::DataTiles, extent::AreaExtent};
 use corniche_store::{Artifacts, Scratch};
-use corniche_tileset::{AreaRecord, AreaRings, AreasSection, encode_areas};
+use corniche_tileset::{AreaRecord, AreaRings, encode_areas};
 use corniche_work::Stage;
-use serde::{Deserialize, Serialize};
 
-use super::{sea::SeaPlace, split::AreaSplitting};
+use super::sea::SeaPlace;
 use crate::{
     ExtractError,
     layers::{
         SectionLayer,
-        layer_totals::AreaTotals,
         layer_writer::{LayerContext, TileLayer, TileSplitting},
         parts_by_tile::{PartsByTile, part_bytes, part_of_bytes},
         plan_splitting::PlanSplitting,
+        tile_section::AreaTotals,
         tile_section::TileSection,
     },
 };
+
+/// How areas are split.
+pub(crate) struct AreaSplitting<'a> {
+    pub plan: PlanSplitting<'a>,
+    /// Areas end where it does.
+    pub extent: &'a AreaExtent,
+}
+
+impl AreaSplitting<'_> {
+    /// The parts of an area by tile. On coarse levels, polygons smaller than a cell are left out.
+    pub(crate) fn split(&self, area: &Area) -> Result<Vec<(TileId, AreaRecord)>, OutlineError> {
+        let PlanSplitting { frame, data, polygon, .. } = self.plan;
+        let mut parts = Vec::new();
+        for level in 0..=frame.max_level() {
+            let step = self.plan.step(level);
+            let mut coarse = Vec::new();
+            for polygon in &area.polygons {
+                coarse.extend(coarsen(polygon, step)?);
+            }
+            if level < frame.max_level() {
+                let [east, north] = frame.node_steps(level).map(i128::from);
+                coarse.retain(|polygon| polygon.doubled_area() >= 2 * east * north);
+            }
+            // Before other cuts: the data's rectangle is not on the lattice of coarse levels.
+            for region in polygon.into_iter().chain(&self.extent.region) {
+                coarse = inside(coarse, region, step)?;
+            }
+            let coarse = cut_out(&coarse, &self.extent.bounds)?;
+            let mut tiles = Vec::new();
+            let wanted = Wanted { frame, data: data.above(level), level };
+            wanted.divide(TileId::ROOT, coarse, &mut tiles)?;
+            parts.extend(tiles.into_iter().map(|(id, polygons)| (id, record(area, &polygons))));
+        }
+        Ok(parts)
+    }
+}
+
+/// The parts of polygons in a region, on the lattice of a level.
+fn inside(
+    polygons: Vec<Polygon>,
+    region: &LatticeRegion,
+    step: i64,
+) -> Result<Vec<Polygon>, OutlineError> {
+    let points: Vec<LatticePoint> =
+        polygons.iter().flat_map(|polygon| polygon.outer().points()).copied().collect();
+    // Outlines are put on the lattice of the level, too.
+    let Some(near) = LatticeBounds::of(&points).map(|bounds| bounds.expanded(2 * step)) else {
+        return Ok(polygons);
+    };
+    if region.edges_near(&near).next().is_some() {
+        return intersection(&polygons, region.rings(), step);
+    }
+    Ok(if region.contains(near.min) { polygons } else { Vec::new() })
+}
+
+/// The tiles of a level on which data can lie.
+struct Wanted<'a> {
+    frame: &'a GridFrame,
+    data: DataTiles,
+    level: u8,
+}
+
+impl Wanted<'_> {
+    /// Divides polygons that lie in a tile, or beside it, by the lines between the tiles beneath it, down to the level.
+    ///
+    /// All tiles are made by the same lines in the same order, those of an area between two tiles by the line between them: so both have
+    /// the same points on it.
+    fn divide(
+        &self,
+        id: TileId,
+        polygons: Vec<Polygon>,
+        tiles: &mut Vec<(TileId, Vec<Polygon>)>,
+    ) -> Result<(), OutlineError> {
+        let bounds = self.frame.tile_lattice_bounds(id);
+        let polygons: Vec<Polygon> =
+            polygons.into_iter().filter(|polygon| meets(polygon, &bounds)).collect();
+        if polygons.is_empty() {
+            return Ok(());
+        }
+        if id.z() == self.level {
+            if self.data.contains(id) {
+                tiles.push((id, polygons));
+            }
+            return Ok(());
+        }
+        // The four children meet in the south-eastern corner of the first, which is north-western.
+        let Some(first) = id.children().next() else { return Ok(()) };
+        let first = self.frame.tile_lattice_bounds(first);
+        let [west, east] = divide_all(&polygons, Axis::East, first.max.u)?;
+        let [south_west, north_west] = divide_all(&west, Axis::North, first.min.v)?;
+        let [south_east, north_east] = divide_all(&east, Axis::North, first.min.v)?;
+        let quarters = [north_west, north_east, south_west, south_east];
+        for (child, quarter) in id.children().zip(quarters) {
+            self.divide(child, quarter, tiles)?;
+        }
+        Ok(())
+    }
+}
+
+fn meets(polygon: &Polygon, bounds: &LatticeBounds) -> bool {
+    LatticeBounds::of(polygon.outer().points()).is_some_and(|own| own.intersects(bounds))
+}
+
+fn record(area: &Area, polygons: &[Polygon]) -> AreaRecord {
+    let rings = |polygon: &Polygon| AreaRings {
+        rings: polygon.rings().map(|ring| ring.points().to_vec()).collect(),
+    };
+    AreaRecord {
+        object: area.object,
+        class: area.class,
+        name: area.name.clone().unwrap_or_default(),
+        polygons: polygons.iter().map(rings).collect(),
+    }
+}
 
 /// Areas as they come in.
 pub(crate) struct AreaLayer<'a> {
@@ -63,9 +179,9 @@ impl TileSplitting for AreaSplitting<'_> {
 
     fn split_object(&self, number: u64, area: Area) -> SplitArea {
         let Area { object, class, area_m2, .. } = area;
-        let parts = self.split(&area).map(|parts| {
-            parts.into_iter().map(|(id, part)| (id, part_bytes(StoredArea::from(part)))).collect()
-        });
+        let parts = self
+            .split(&area)
+            .map(|parts| parts.into_iter().map(|(id, part)| (id, part_bytes(part))).collect());
         SplitArea { number, object, class, area_m2, parts }
     }
 }
@@ -118,12 +234,10 @@ impl<'a> TileLayer for AreaLayer<'a> {
         self.parts.for_each_tile(
             told.observer,
             |parts: &mut Vec<AreaRecord>, tile, _, bytes| {
-                let part =
-                    part_of_bytes(&bytes).and_then(StoredArea::into_record).ok_or_else(|| {
-                        let key = SectionLayer::Areas.section().item(tile);
-                        damaged(key, &"what was read back is no area")
-                    })?;
-                parts.push(part);
+                parts.push(part_of_bytes(&bytes).ok_or_else(|| {
+                    let key = SectionLayer::Areas.section().item(tile);
+                    damaged(key, &"what was read back is no area")
+                })?);
                 Ok(())
             },
             |tile, parts| put_section(tile, &parts, splitting, store),
@@ -142,39 +256,6 @@ impl<'a> TileLayer for AreaLayer<'a> {
     }
 }
 
-/// An area of a tile, as it is kept while it is sorted.
-#[derive(Serialize, Deserialize)]
-struct StoredArea {
-    is_relation: bool,
-    id: i64,
-    class: u8,
-    name: String,
-    polygons: Vec<Vec<Vec<LatticePoint>>>,
-}
-
-impl From<AreaRecord> for StoredArea {
-    fn from(record: AreaRecord) -> Self {
-        let AreaRecord { object, class, name, polygons } = record;
-        let (kind, id) = object.parts();
-        Self {
-            is_relation: kind == "relation",
-            id,
-            class: class.number(),
-            name,
-            polygons: polygons.into_iter().map(|polygon| polygon.rings).collect(),
-        }
-    }
-}
-
-impl StoredArea {
-    fn into_record(self) -> Option<AreaRecord> {
-        let Self { is_relation, id, class, name, polygons } = self;
-        let polygons = polygons.into_iter().map(|rings| AreaRings { rings }).collect();
-        let object = if is_relation { AreaObject::Relation(id) } else { AreaObject::Way(id) };
-        Some(AreaRecord { object, class: AreaClass::from_number(class)?, name, polygons })
-    }
-}
-
 fn put_section(
     tile: u64,
     areas: &[AreaRecord],
@@ -184,7 +265,10 @@ fn put_section(
     let rings = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
     let counts = [areas.len() as u64, rings.map(|ring| ring.len() as u64).sum()];
     TileSection::put((SectionLayer::Areas, tile), store, counts, |id| {
-        let step = splitting.step(id.z());
-        Ok(encode_areas(id, splitting.frame, step, areas)?.map(AreasSection::into_bytes))
+        encode_areas(id, splitting.frame, splitting.step(id.z()), areas)
     })
 }
+
+#[cfg(test)]
+#[path = "layer_tests.rs"]
+mod tests;

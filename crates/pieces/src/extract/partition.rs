@@ -29,16 +29,16 @@ use corniche_work::Stage;
 use super::{kept::kept_in, no_road, placed_reading::PlacedReading};
 use crate::{
     ExtractError,
-    areas::{layer::AreaLayer, sea::SeaPlace, split::AreaSplitting},
+    areas::{
+        layer::{AreaLayer, AreaSplitting},
+        sea::SeaPlace,
+    },
     layers::{
         defects::{DefectsWriter, replay_defects},
         layer_writer::{LayerContext, LayerWriter},
         plan_splitting::PlanSplitting,
     },
-    lines::{
-        layer::{LinesLayer, MeasuredSplitting},
-        split::LineSplitting,
-    },
+    lines::layer::{LineSplitting, LinesLayer, MeasuredSplitting},
     roads::{
         layer::RoadLayer,
         split::RoadSplitting,
@@ -67,8 +67,6 @@ pub struct ExtractInput<'a> {
     pub levels: &'a Levels,
     /// How roads are measured.
     pub lengths: &'a TrueLengths<'a>,
-    /// The finest tiles on which the data's rectangle lies, all together.
-    pub data_bounds: LatticeBounds,
     /// The data's rectangle: that of all nodes at which data can lie.
     pub node_bounds: LatticeBounds,
     /// The bounds that were asked for.
@@ -239,7 +237,7 @@ fn road_layer<'a>(
     let splitting = RoadSplitting {
         levels: input.levels,
         lengths: input.lengths,
-        data_bounds: input.data_bounds,
+        data_bounds: input.data.bounds(input.levels.frame()),
         node_bounds: input.node_bounds,
         clip: input.clip,
         polygon: input.polygon,

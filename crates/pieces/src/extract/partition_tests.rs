@@ -112,7 +112,6 @@ impl World {
             projection: &self.projection,
             levels: &self.levels,
             lengths: &TrueLengths::new(frame, &self.table, &self.projection),
-            data_bounds: frame.tile_lattice_bounds(TileId::ROOT),
             node_bounds: frame.tile_lattice_bounds(TileId::ROOT),
             polygon: None,
             clip: None,

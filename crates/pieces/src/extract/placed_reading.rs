@@ -67,9 +67,7 @@ impl PlacedReading<'_> {
             scratch,
             on_progress: Some(on_progress),
         });
-        if observer.is_cancelled() {
-            return Err(ExtractError::Interrupted);
-        }
+        observer.check()?;
         done.map_err(not_read)?;
         match unprojected.into_inner().unwrap_or_else(PoisonError::into_inner) {
             Some(error) => Err(ExtractError::Project(error)),

@@ -36,7 +36,8 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
         mut put: impl FnMut(u64, T) -> Result<(), ExtractError>,
     ) -> Result<(), ExtractError> {
         let mut put = |(tile, parts): (u64, T)| {
-            if observer.is_cancelled() { Err(ExtractError::Interrupted) } else { put(tile, parts) }
+            observer.check()?;
+            put(tile, parts)
         };
         let mut current: Option<(u64, T)> = None;
         for part in self.0.finish().map_err(ExtractError::Storage)? {
@@ -51,17 +52,31 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
     }
 }
 
-/// A part as bytes.
-pub(crate) fn part_bytes<T: Serialize>(part: T) -> Vec<u8> {
-    // Writing to a list cannot fail, and all of a part can be written.
-    let written = bincode::serde::encode_to_vec(part, bincode::config::standard());
+/// Appends something that is kept for a while.
+pub(crate) fn append(bytes: &mut Vec<u8>, kept: impl Serialize) {
+    // Writing to a list cannot fail, and all that is kept so can be written.
+    let written = bincode::serde::encode_into_std_write(kept, bytes, bincode::config::standard());
     debug_assert!(written.is_ok());
-    written.unwrap_or_default()
+}
+
+/// Takes from the front what was appended; `None` where that is something else.
+pub(crate) fn take<T: DeserializeOwned>(bytes: &mut &[u8]) -> Option<T> {
+    let read = bincode::serde::decode_from_slice(bytes, bincode::config::standard());
+    let (taken, used) = read.ok()?;
+    *bytes = &bytes[used..];
+    Some(taken)
+}
+
+/// A part as bytes.
+pub(crate) fn part_bytes(part: impl Serialize) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    append(&mut bytes, part);
+    bytes
 }
 
 /// A part of such bytes; `None` where they are none.
-pub(crate) fn part_of_bytes<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
-    bincode::serde::decode_from_slice(bytes, bincode::config::standard()).ok().map(|read| read.0)
+pub(crate) fn part_of_bytes<T: DeserializeOwned>(mut bytes: &[u8]) -> Option<T> {
+    take(&mut bytes)
 }
 
 /// A part, encoded.
@@ -76,20 +91,13 @@ struct ObjectPart<K> {
 impl<K: PartKey> SortRecord for ObjectPart<K> {
     fn encode(&self, bytes: &mut Vec<u8>) {
         let Self { tile, key, bytes: own } = self;
-        // Writing to a list cannot fail, and keys are numbers.
-        let written = bincode::serde::encode_into_std_write(
-            (tile, key, own.len() as u64),
-            bytes,
-            bincode::config::standard(),
-        );
-        debug_assert!(written.is_ok());
+        append(bytes, (tile, key, own.len() as u64));
         bytes.extend(own);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let read = bincode::serde::decode_from_slice(bytes, bincode::config::standard());
-        let ((tile, key, length), used): ((u64, K, u64), usize) = read.ok()?;
-        let (own, rest) = bytes[used..].split_at_checked(usize::try_from(length).ok()?)?;
+        let (tile, key, length): (u64, K, u64) = take(bytes)?;
+        let (own, rest) = bytes.split_at_checked(usize::try_from(length).ok()?)?;
         *bytes = rest;
         Some(Self { tile, key, bytes: own.to_vec() })
     }

@@ -11,11 +11,12 @@ use super::{
     near_spans::{NearRoad, NearRoadsWriter},
     pieces::{RoadPiece, TilePiecesWriter},
     split::{RoadSplitting, SplitRoad},
-    totals::{LengthsWriter, RoadTotals},
+    totals::{RoadLength, RoadTotals, lengths_writer},
 };
 use crate::{
     ExtractError,
     layers::{
+        blocks::BlockWriter,
         layer_writer::{LayerContext, SplitOf, TileLayer, TileSplitting},
         parts_by_tile::PartsByTile,
     },
@@ -29,7 +30,7 @@ pub(crate) struct RoadLayer<'a> {
     splitting: RoadSplitting<'a>,
     store: &'a dyn Artifacts,
     totals: RoadTotals,
-    lengths: LengthsWriter<'a>,
+    lengths: BlockWriter<'a, RoadLength>,
     pieces: PartsByTile<'a, u32>,
     /// Where bridges and tunnels become spans: what may be near them.
     near_spans: Option<NearRoadsWriter<'a>>,
@@ -49,7 +50,7 @@ impl<'a> RoadLayer<'a> {
                 classes: vec![(0, 0); FunctionalRoadClass::COUNT],
                 ..RoadTotals::default()
             },
-            lengths: LengthsWriter::new(store),
+            lengths: lengths_writer(store),
             pieces: PartsByTile::new(scratch, memory_bytes / 4 * 3),
             near_spans: spans.then(|| NearRoadsWriter::new(scratch, memory_bytes / 4)),
         }

@@ -4,13 +4,16 @@ use corniche_roads::Structure;
 use corniche_spec::artifacts::ArtifactError;
 use corniche_spec::{Defect, Loss, Observer, true_lengths::UM};
 use corniche_store::{Artifacts, Scratch, SortRecord, Sorted, Sorter};
-use corniche_tileset::RoadLoss;
+use corniche_tileset::{Counts, RoadLoss, SampleCounts};
 
 use super::{
     lay::RoadFate,
     totals::{BLOCK_ROADS, RoadLength, RoadTotals, lengths_of_block},
 };
-use crate::ExtractError;
+use crate::{
+    ExtractError,
+    layers::parts_by_tile::{append, take},
+};
 
 /// A road's true length at the finest level, micrometres, by what became of it; each part measured by itself.
 #[expect(clippy::struct_field_names, reason = "the unit is part of every name")]
@@ -63,6 +66,28 @@ pub struct Sums {
     pub(crate) lost: Vec<RoadLoss>,
     /// The same where only what lies outside the data's tiles is outside the data, as packages of before have it.
     pub lost_by_tiles: Vec<RoadLoss>,
+}
+
+/// What came in, what was kept, what was lost and why: per road, then summed.
+#[must_use]
+pub fn road_counts(samples: SampleCounts, roads: &RoadTotals, losses: &Sums) -> Counts {
+    let extract = &roads.extract;
+    Counts {
+        samples,
+        roads_in: roads.roads,
+        roads_in_um: roads.length_um,
+        classes: roads.classes.clone(),
+        defects: roads.defects.iter().map(|(name, &count)| (name.clone(), count)).collect(),
+        unknown_highways: extract.unknown_highways.clone(),
+        tags_taken_otherwise: extract.tags_taken_otherwise.clone(),
+        blobs_passed_over: extract.blobs_passed_over,
+        highways_in: extract.highways_in,
+        highways_left_out: extract.highways_left_out.clone(),
+        left_out: extract.left_out.clone(),
+        roads_kept: losses.roads_kept,
+        roads_kept_um: losses.roads_kept_um,
+        roads_lost: losses.lost.clone(),
+    }
 }
 
 /// Adds up what became of each road in all tiles. It takes no more memory than it is given, however many roads there are.
@@ -135,21 +160,12 @@ struct FateRecord {
 
 impl SortRecord for FateRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        bytes.extend(self.ordinal.to_le_bytes());
-        bytes.extend(self.fate.kept_um.to_le_bytes());
-        bytes.extend(self.fate.void_um.to_le_bytes());
+        append(bytes, (self.ordinal, self.fate));
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let (ordinal, rest) = bytes.split_first_chunk()?;
-        let (kept_um, rest) = rest.split_first_chunk()?;
-        let (void_um, rest) = rest.split_first_chunk()?;
-        *bytes = rest;
-        let fate = RoadFate {
-            kept_um: u64::from_le_bytes(*kept_um),
-            void_um: u64::from_le_bytes(*void_um),
-        };
-        Some(Self { ordinal: u32::from_le_bytes(*ordinal), fate })
+        let (ordinal, fate) = take(bytes)?;
+        Some(Self { ordinal, fate })
     }
 }
 

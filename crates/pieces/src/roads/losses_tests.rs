@@ -7,7 +7,7 @@ use corniche_store::{MemoryScratch, MemoryStore};
 use proptest::{collection::vec, prelude::*};
 
 use super::*;
-use crate::roads::totals::{LengthsWriter, RoadLength};
+use crate::roads::totals::{RoadLength, lengths_writer};
 
 /// Remembers defects.
 #[derive(Default)]
@@ -23,7 +23,7 @@ impl Observer for Told {
 
 fn stored(lengths: &[RoadLength]) -> (MemoryStore, RoadTotals) {
     let store = MemoryStore::default();
-    let mut writer = LengthsWriter::new(&store);
+    let mut writer = lengths_writer(&store);
     for &length in lengths {
         writer.push(length).unwrap();
     }

@@ -17,7 +17,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     ExtractError,
-    layers::parts_by_tile::{PartsByTile, part_bytes, part_of_bytes},
+    layers::{
+        blocks::{BlockWriter, for_each_block},
+        parts_by_tile::{PartsByTile, part_bytes, part_of_bytes},
+    },
 };
 
 /// Roads of a block of [`Kind::SpanRoads`]. The last block has fewer, perhaps none: it says that all are there.
@@ -191,7 +194,13 @@ impl<'a> NearRoadsWriter<'a> {
             .iter()
             .flat_map(|(_, road)| road.nodes.iter().map(|&(index, _)| road.points[index as usize]));
         let near = Vicinity::new(segments, nodes, reach);
-        let mut blocks = BlocksWriter { store, block: Vec::new(), number: 0, same_places };
+        let mut blocks = BlockWriter::new(store, Kind::SpanRoads, BLOCK_ROADS);
+        // The first road tells them.
+        let mut same_places = Some(same_places);
+        let mut put = |road: NearRoad| {
+            let same_places = same_places.take().unwrap_or_default();
+            blocks.push(NearRoad { same_places, ..road })
+        };
         let mut of_spans = of_spans.into_iter().peekable();
         let damaged = || artifacts::damaged(Kind::SpanRoads.item(0), &"it makes no sense");
         others.for_each_tile(
@@ -199,15 +208,15 @@ impl<'a> NearRoadsWriter<'a> {
             |(): &mut (), _, place, bytes| {
                 let other: NearRoad = part_of_bytes(&bytes).ok_or_else(damaged)?;
                 while let Some((_, road)) = of_spans.next_if(|(own, _)| *own < place) {
-                    blocks.push(road)?;
+                    put(road)?;
                 }
                 let pieces = other.pieces(|ends| near.may_meet(ends));
-                pieces.into_iter().try_for_each(|piece| blocks.push(piece))
+                Ok(pieces.into_iter().try_for_each(&mut put)?)
             },
             |_, ()| Ok(()),
         )?;
-        of_spans.try_for_each(|(_, road)| blocks.push(road))?;
-        blocks.put()
+        of_spans.try_for_each(|(_, road)| put(road))?;
+        Ok(blocks.finish_with_mark()?)
     }
 }
 
@@ -227,46 +236,15 @@ fn needed(all: Vec<(RoadPlace, NearRoad)>, same_places: &[[i64; 2]]) -> Vec<(Roa
     needed.map(|(road, _)| road).collect()
 }
 
-/// Puts roads into the store, block by block.
-struct BlocksWriter<'a> {
-    store: &'a dyn Artifacts,
-    block: Vec<NearRoad>,
-    number: u64,
-    /// Not told yet.
-    same_places: Vec<[i64; 2]>,
-}
-
-impl BlocksWriter<'_> {
-    fn push(&mut self, road: NearRoad) -> Result<(), ExtractError> {
-        let same_places = std::mem::take(&mut self.same_places);
-        self.block.push(NearRoad { same_places, ..road });
-        if self.block.len() == BLOCK_ROADS { self.put() } else { Ok(()) }
-    }
-
-    fn put(&mut self) -> Result<(), ExtractError> {
-        artifacts::put(self.store, Kind::SpanRoads.item(self.number), &self.block)?;
-        self.number += 1;
-        self.block.clear();
-        Ok(())
-    }
-}
-
 /// Hands all roads near spans to `take`, in their order; one block of them is in memory.
 ///
 /// # Errors
 /// See [`ExtractError`].
 pub fn for_each(store: &dyn Artifacts, mut take: impl FnMut(NearRoad)) -> Result<(), ExtractError> {
-    for block in 0.. {
-        let key = Kind::SpanRoads.item(block);
-        let own: Option<Vec<NearRoad>> = artifacts::get(store, key)?;
-        let own = own.ok_or_else(|| artifacts::damaged(key, &"it is missing"))?;
-        let is_last = own.len() < BLOCK_ROADS;
-        own.into_iter().for_each(&mut take);
-        if is_last {
-            break;
-        }
-    }
-    Ok(())
+    for_each_block(store, Kind::SpanRoads, BLOCK_ROADS, |roads| {
+        roads.into_iter().for_each(&mut take);
+        Ok(())
+    })
 }
 
 #[cfg(test)]

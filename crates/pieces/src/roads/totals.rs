@@ -7,9 +7,13 @@ use corniche_osm::{ExtractSummary, LeftOut, LeftOutReason, LeftOutWays};
 use corniche_roads::{LossReason, Structure};
 use corniche_spec::artifacts::{self, Kind};
 use corniche_store::Artifacts;
+use corniche_tileset::LeftOutRecord;
 use serde::{Deserialize, Serialize};
 
-use crate::ExtractError;
+use crate::{
+    ExtractError,
+    layers::blocks::{BlockWriter, block},
+};
 
 /// Roads of a block of [`Kind::RoadLengths`].
 pub(crate) const BLOCK_ROADS: u64 = 1 << 16;
@@ -63,20 +67,7 @@ pub struct ExtractCounts {
     /// Ways with a `highway` tag that are no roads here, by reason.
     pub highways_left_out: Vec<(String, u64)>,
     /// Ways that the FRC table leaves out, by reason and `highway` value.
-    pub left_out: Vec<LeftOutCount>,
-}
-
-/// Ways that the FRC table leaves out for one reason, with one `highway` value.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct LeftOutCount {
-    /// Why they were left out.
-    pub reason: String,
-    /// The value of `highway` of these ways.
-    pub highway: String,
-    /// How many ways.
-    pub ways: u64,
-    /// True length in plan, micrometres.
-    pub length_um: u64,
+    pub left_out: Vec<LeftOutRecord>,
 }
 
 impl From<&ExtractSummary> for ExtractCounts {
@@ -96,13 +87,13 @@ impl From<&ExtractSummary> for ExtractCounts {
 }
 
 /// Ways that are left out, by reason, and within one the longest first.
-fn left_out_ways(extract: &ExtractSummary) -> Vec<LeftOutCount> {
+fn left_out_ways(extract: &ExtractSummary) -> Vec<LeftOutRecord> {
     let ways = extract.left_out_ways.iter();
-    let mut counts: Vec<(LeftOutReason, LeftOutCount)> = ways
+    let mut counts: Vec<(LeftOutReason, LeftOutRecord)> = ways
         .map(|((reason, highway), found)| {
             let (text, highway) = (reason.text().to_owned(), highway.clone());
             let LeftOutWays { ways, length_um } = *found;
-            (*reason, LeftOutCount { reason: text, highway, ways, length_um })
+            (*reason, LeftOutRecord { reason: text, highway, ways, length_um })
         })
         .collect();
     // The sort keeps the order of values where lengths are the same.
@@ -124,52 +115,23 @@ fn left_out(extract: &ExtractSummary) -> Vec<(String, u64)> {
     some.map(|(reason, ways)| (reason.text().to_owned(), ways)).collect()
 }
 
-/// Keeps the lengths of roads, block by block, as they come in the order of their ordinals.
-pub(crate) struct LengthsWriter<'a> {
-    store: &'a dyn Artifacts,
-    blocks: u64,
-    block: Vec<RoadLength>,
-}
-
-impl<'a> LengthsWriter<'a> {
-    pub(crate) fn new(store: &'a dyn Artifacts) -> Self {
-        Self { store, blocks: 0, block: Vec::new() }
-    }
-
-    /// Adds the road with the next ordinal.
-    pub(crate) fn push(&mut self, length: RoadLength) -> Result<(), ExtractError> {
-        self.block.push(length);
-        if self.block.len() as u64 == BLOCK_ROADS { self.flush() } else { Ok(()) }
-    }
-
-    /// Ends the last block.
-    pub(crate) fn finish(mut self) -> Result<(), ExtractError> {
-        if self.block.is_empty() { Ok(()) } else { self.flush() }
-    }
-
-    fn flush(&mut self) -> Result<(), ExtractError> {
-        artifacts::put(self.store, Kind::RoadLengths.item(self.blocks), &self.block)?;
-        self.blocks += 1;
-        self.block.clear();
-        Ok(())
-    }
+/// Keeps the lengths of roads, as they come in the order of their ordinals.
+pub(crate) fn lengths_writer(store: &dyn Artifacts) -> BlockWriter<'_, RoadLength> {
+    BlockWriter::new(store, Kind::RoadLengths, BLOCK_ROADS as usize)
 }
 
 /// The lengths of a block, which has `roads` roads.
 pub(crate) fn lengths_of_block(
     store: &dyn Artifacts,
-    block: u64,
+    number: u64,
     roads: u64,
 ) -> Result<Vec<RoadLength>, ExtractError> {
-    let key = Kind::RoadLengths.item(block);
-    let lengths: Option<Vec<RoadLength>> = artifacts::get(store, key)?;
-    match lengths {
-        Some(lengths) if lengths.len() as u64 == roads => Ok(lengths),
-        Some(_) => {
-            Err(artifacts::damaged(key, &"it does not have the lengths of its roads").into())
-        }
-        None => Err(artifacts::damaged(key, &"it is missing").into()),
+    let lengths: Vec<RoadLength> = block(store, Kind::RoadLengths, number)?;
+    if lengths.len() as u64 != roads {
+        let what = "it does not have the lengths of its roads";
+        return Err(artifacts::damaged(Kind::RoadLengths.item(number), &what).into());
     }
+    Ok(lengths)
 }
 
 #[cfg(test)]

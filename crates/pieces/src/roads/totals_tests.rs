@@ -16,7 +16,7 @@ fn lengths_come_back_block_by_block() {
         padding_um: k / 3,
         beyond_um: k / 2,
     };
-    let mut writer = LengthsWriter::new(&store);
+    let mut writer = lengths_writer(&store);
     let count = BLOCK_ROADS + 1;
     for k in 0..count {
         writer.push(length(k)).unwrap();
@@ -35,6 +35,6 @@ fn lengths_come_back_block_by_block() {
 #[test]
 fn a_whole_number_of_blocks_has_no_empty_one() {
     let store = MemoryStore::default();
-    LengthsWriter::new(&store).finish().unwrap();
+    lengths_writer(&store).finish().unwrap();
     assert!(store.items(Kind::RoadLengths as u8).is_empty());
 }

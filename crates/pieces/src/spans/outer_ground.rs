@@ -197,10 +197,9 @@ impl OuterGrounds for WholeDem<'_> {
         workers::in_order_unless_cancelled(
             self.observer,
             self.threads,
-            by_tile.len(),
+            &by_tile,
             || Ok(self.dem.reader(&plan)),
-            |reader, number| {
-                let (tile, indices) = &by_tile[number];
+            |reader, (tile, indices)| {
                 let heights = reader.window(self.window(*tile, 1))?.heights;
                 if heights.count_heights() == 0 {
                     return Ok(vec![None; indices.len()]);
@@ -223,8 +222,8 @@ impl OuterGrounds for WholeDem<'_> {
                 };
                 Ok(indices.iter().map(height_m).collect::<Vec<Option<f64>>>())
             },
-            |number, found: Vec<Option<f64>>| {
-                for (&index, height_m) in by_tile[number].1.iter().zip(found) {
+            |(_, indices), found: Vec<Option<f64>>| {
+                for (&index, height_m) in indices.iter().zip(found) {
                     heights_m[index] = heights_m[index].or(height_m);
                 }
                 Ok::<(), ExtractError>(())

@@ -15,7 +15,7 @@ use corniche_spec::{
     artifacts::{self, Kind},
 };
 use corniche_tileset::{
-    OuterGround, SpanRun, SpansSection, encode_spans, limits::MAX_SPAN_POINTS, pmtiles_order,
+    OuterGround, SpanRun, encode_spans, limits::MAX_SPAN_POINTS, pmtiles_order,
 };
 use corniche_tin::{Placement, Surface, Tin};
 use corniche_work::{Stage, workers};
@@ -110,18 +110,17 @@ impl SpanSolving<'_> {
                 of_level = decks.on(&on_level(level)?);
                 &of_level
             };
-            workers::in_order_unless_cancelled(
-                observer,
+            workers::advance(
+                (observer, Stage::Spans),
                 self.threads,
-                tiles.len(),
-                || Ok(()),
-                |(), index| self.put_section((&network, decks), tiles[index]),
+                &tiles,
+                || Ok::<(), ExtractError>(()),
+                |(), &id| self.put_section((&network, decks), id),
                 |_, found| {
                     if level == finest {
                         within.extend(found);
                     }
-                    observer.advance(Stage::Spans, 1);
-                    Ok::<(), ExtractError>(())
+                    Ok(())
                 },
             )?;
         }
@@ -206,9 +205,8 @@ impl SpanSolving<'_> {
         let points = runs.iter().map(|run| run.points.len() as u64).sum();
         let counts = [runs.len() as u64, points];
         let tile = (SectionLayer::Spans, pmtiles_order(id));
-        TileSection::put(tile, self.of.store, counts, |id| {
-            Ok(encode_spans(id, self.of.frame, &runs)?.map(SpansSection::into_bytes))
-        })?;
+        let encode = |id| encode_spans(id, self.of.frame, &runs);
+        TileSection::put(tile, self.of.store, counts, encode)?;
         Ok(within)
     }
 }

@@ -9,7 +9,6 @@
 
 mod grounds;
 mod list;
-mod node_counts;
 mod tile_costs;
 
 use std::{num::NonZeroU32, path::PathBuf};
@@ -26,10 +25,9 @@ use corniche_spec::{
 use corniche_store::Artifacts as _;
 use corniche_tileset::InputKind;
 
-use grounds::Grounds;
+use grounds::{Grounds, nodes_by_tile};
 pub use list::Job;
 use list::{Costs, ExtractCosts, list, micros};
-use node_counts::nodes_by_tile;
 use tile_costs::TileCosts;
 
 use super::{

@@ -22,7 +22,9 @@ fn a_link_to_a_store_is_followed_with_and_without_a_slash() {
         let found = Folder::new(Arc::clone(&disk), &folder).stored_plan().unwrap();
         assert_eq!(found, Some(plan.clone()), "{name}");
         let own = OwnPart { folder: &folder, name: "a", plan: &plan, interval: SYNC_INTERVAL };
-        drop(LocalStore::open_parts(Arc::clone(&disk), &[], &plan.hash, Some(own)).unwrap());
+        let sealed = SealedParts { places: &[], is_needed: &|_| true };
+        let own = Some((own, Hold::Shared));
+        drop(LocalStore::open_places(Arc::clone(&disk), sealed, &plan.hash, own).unwrap());
     }
     // What is not there yet, or leads nowhere, is told later by the name that was given.
     symlink("nowhere", place.path().join("dead")).unwrap();

@@ -7,7 +7,7 @@ use corniche_ground::heights::{pyramid::all_there, rasters};
 use corniche_spec::artifacts::{ArtifactError, Kind, damaged};
 use corniche_work::{Stage, workers};
 
-use super::{tins, top};
+use super::top;
 use crate::{
     BuildError,
     context::Context,
@@ -28,7 +28,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
     ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
     ids.sort_unstable_by_key(|&id| corniche_tileset::pmtiles_order(id));
     // They are there, unless the part that made them for the tiles beneath is not among the stores.
-    tins::make(
+    top::make_tins(
         context,
         ids.iter().copied().filter(|&id| !store.has(Kind::Tin.of_tile(id))).collect(),
     )?;

@@ -14,14 +14,14 @@ use crate::{BuildError, context::Context};
 pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
     let store = context.store;
     let is_done = |index: usize| store.has(Kind::InputHash.item(index as u64));
-    context.inputs.hash_each(is_done, context.observer, |index, record| {
+    context.opened.inputs.hash_each(is_done, context.observer, |index, record| {
         Ok(artifacts::put(store, Kind::InputHash.item(index as u64), &record)?)
     })
 }
 
 /// The records of all inputs, as the manifest has them.
 pub(crate) fn records(context: &Context<'_>) -> Result<Vec<InputRecord>, BuildError> {
-    let inputs = context.inputs;
+    let inputs = &context.opened.inputs;
     let mut records = Vec::new();
     for index in 0..inputs.count() {
         let record: Option<InputRecord> =
@@ -42,7 +42,7 @@ pub(crate) fn records(context: &Context<'_>) -> Result<Vec<InputRecord>, BuildEr
     if let Some(terrain) = context.source.package() {
         // The terrain was made from the package's elevation files, not from the package. So were photos that are taken from it from files.
         records.retain(|record| !InputKind::Terrain.is_of(record));
-        let photos: &[InputKind] = match context.photo {
+        let photos: &[InputKind] = match context.opened.photo {
             PhotoSource::Package(_) => &InputKind::OF_PHOTOS,
             PhotoSource::Nothing | PhotoSource::Files(_) => &[],
         };

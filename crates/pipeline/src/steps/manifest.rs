@@ -1,25 +1,34 @@
-//! The manifest: the package's table of contents, from the context and the sums over all tiles.
+//! The manifest: the package's table of contents, from the context and the sums over all tiles, which are folds of their records.
+
+use std::collections::BTreeMap;
 
 use corniche_areas::ClassedLayer;
+use corniche_geom::TileId;
 use corniche_ground::heights::pyramid::HeightSums;
 use corniche_pieces::{
     layers::{
-        SectionLayer,
-        layer_totals::{AreaTotals, LineTotals},
-        tile_section::SectionSums,
+        ByLayer, SectionLayer,
+        tile_section::{AreaTotals, LineTotals},
+        tile_section::{SectionOfTile, SectionSums},
     },
-    roads::{counts::road_counts, losses, totals::RoadTotals},
+    roads::{
+        lay::ClassSums,
+        losses::{self, road_counts},
+        totals::RoadTotals,
+    },
     spans::totals::SpanTotals,
 };
 use corniche_spec::{extent::Outline, manifest_texts, settings_record};
 use corniche_tileset::{
     AreaLevelRecord, AreasRecord, Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord,
-    LevelRecord, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord, SampleErrorRecord,
-    ScaleRecord, SpansRecord, VerticalRecord,
+    LevelRecord, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord, SampleSums, ScaleRecord,
+    SpansRecord, SvTails, VerticalRecord,
 };
 
-use super::sums::TileSums;
-use crate::context::Context;
+use crate::{
+    context::Context,
+    tile::record::{LevelShare, TileRecord},
+};
 
 /// Everything that goes into the manifest.
 pub(crate) struct Outcome<'a> {
@@ -43,12 +52,13 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
     let record = settings_record::of(
         &settings.terrain,
         &settings.roads,
-        outcome.context.max_error_m,
-        outcome.context.photo.record(),
+        outcome.context.opened.max_error_m,
+        outcome.context.opened.photo.record(),
         (settings.areas.as_ref(), &settings.lines),
     );
     let mut attribution = settings.attribution.clone();
-    for credit in outcome.context.photo.files().into_iter().flat_map(|photo| &photo.credits) {
+    for credit in outcome.context.opened.photo.files().into_iter().flat_map(|photo| &photo.credits)
+    {
         if !attribution.contains(credit) {
             attribution.push(credit.clone());
         }
@@ -85,7 +95,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
             range_m: outcome.heights.range_m.map(f64::from),
         },
         datum_operations: manifest_texts::datum_operations(&plan.datum_operations),
-        coordinates: outcome.context.coordinates.clone(),
+        coordinates: outcome.context.opened.coordinates.clone(),
         levels: level_records(outcome),
         settings_sha256: settings_record::sha256(&record),
         settings: record,
@@ -107,24 +117,16 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
     levels
         .numbers()
         .map(|level| {
-            let recorded = recorded.map(|terrain| &terrain.manifest().levels[usize::from(level)]);
             let sums = outcome.tiles.levels.get(&level).cloned().unwrap_or_default();
             let errors_m = Distribution::of(sums.geometric_errors_m);
-            let measured = Measured {
-                sample_error: outcome.tiles.samples[usize::from(level)].record(),
-                tightness: Distribution::of(sums.tightness),
-                uncovered_nodes: sums.uncovered_nodes,
-            };
-            // A package holds the figures of each level, but of the tiles not what they are made of.
-            let measured = recorded.map_or(measured, Measured::recorded);
-            LevelRecord {
+            let record = LevelRecord {
                 level,
                 cell_m: levels.frame().level_cell(level),
                 max_error_m: levels.max_error_m(level),
                 geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
                 errors_m,
-                sample_error: measured.sample_error,
-                tightness: measured.tightness,
+                sample_error: outcome.tiles.samples[usize::from(level)].record(),
+                tightness: Distribution::of(sums.tightness),
                 least_class: levels
                     .least_class(level)
                     .map(corniche_roads::FunctionalRoadClass::number),
@@ -135,24 +137,15 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 vertices: sums.vertices,
                 terrain_bytes: sums.terrain_bytes,
                 relief_bytes: sums.relief_bytes,
-                uncovered_nodes: measured.uncovered_nodes,
-            }
+                uncovered_nodes: sums.uncovered_nodes,
+            };
+            // A package holds the figures of each level that come of comparing its TINs with the heights, but of the tiles not what they are made of.
+            let Some(terrain) = recorded else { return record };
+            let &LevelRecord { sample_error, tightness, uncovered_nodes, .. } =
+                &terrain.manifest().levels[usize::from(level)];
+            LevelRecord { sample_error, tightness, uncovered_nodes, ..record }
         })
         .collect()
-}
-
-/// What is known of a level only by comparing its TINs with the heights.
-struct Measured {
-    sample_error: SampleErrorRecord,
-    tightness: Option<Distribution>,
-    uncovered_nodes: u64,
-}
-
-impl Measured {
-    fn recorded(level: &LevelRecord) -> Self {
-        let &LevelRecord { sample_error, tightness, uncovered_nodes, .. } = level;
-        Self { sample_error, tightness, uncovered_nodes }
-    }
 }
 
 /// Counts of roads: read, kept, and lost by reason.
@@ -240,4 +233,90 @@ fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
             sv_stored_bytes: sums.sv_stored_bytes,
         })
         .collect()
+}
+
+/// Sums over all tiles.
+///
+/// Whole numbers, maxima, and lists that are sorted before they are used: the order in which records come does not matter.
+pub(crate) struct TileSums {
+    pub(crate) levels: BTreeMap<u8, LevelSums>,
+    /// Sums by level and class.
+    pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
+    /// Per level, root first: distances to samples.
+    pub(crate) samples: Vec<SampleSums>,
+    pub(crate) sv_tails: SvTails,
+    least_measured_m: f64,
+}
+
+/// Sums over the tiles of a level.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct LevelSums {
+    pub(crate) tiles: u64,
+    pub(crate) vertices: u64,
+    pub(crate) triangles: u64,
+    pub(crate) terrain_bytes: u64,
+    pub(crate) relief_bytes: u64,
+    /// Tiles with a photo.
+    pub(crate) photo_tiles: u64,
+    pub(crate) photo_bytes: u64,
+    pub(crate) sections: ByLayer<SectionSums>,
+    /// Geometric errors of its tiles.
+    pub(crate) geometric_errors_m: Vec<f64>,
+    /// Geometric errors of its tiles over their deviations, where those can be measured.
+    pub(crate) tightness: Vec<f64>,
+    /// Nodes with data that its tiles do not cover, or that have no tile above them.
+    pub(crate) uncovered_nodes: u64,
+}
+
+impl TileSums {
+    /// Nothing yet.
+    pub(crate) fn new(context: &Context<'_>) -> Self {
+        let quantum_m = context.levels.quantum_m();
+        Self {
+            levels: BTreeMap::new(),
+            classes: BTreeMap::new(),
+            samples: vec![SampleSums::new(quantum_m); context.levels.numbers().count()],
+            sv_tails: SvTails::new(),
+            least_measured_m: VerticalRecord::least_measured_error_m(quantum_m),
+        }
+    }
+
+    /// Adds the spans of a tile.
+    pub(crate) fn add_spans(&mut self, level: u8, own: SectionOfTile) {
+        self.levels.entry(level).or_default().sections[SectionLayer::Spans].add(own);
+    }
+
+    /// Adds a tile.
+    pub(crate) fn add(&mut self, id: TileId, record: &TileRecord) {
+        let level = id.z();
+        for ((above, share), samples) in (0..).zip(&record.levels).zip(&mut self.samples) {
+            let LevelShare { has_ground, seen, sums } = share;
+            samples.merge(sums);
+            if !has_ground {
+                self.levels.entry(above).or_default().uncovered_nodes += seen.uncovered_nodes;
+            }
+        }
+        let Some(ground) = record.ground else { return };
+        let sums = self.levels.entry(level).or_default();
+        let deviation = ground.deviation;
+        sums.tiles += 1;
+        sums.vertices += ground.vertices;
+        sums.triangles += ground.triangles;
+        sums.terrain_bytes += ground.terrain_bytes;
+        sums.relief_bytes += ground.relief_bytes;
+        sums.photo_tiles += u64::from(ground.photo_bytes > 0);
+        sums.photo_bytes += ground.photo_bytes;
+        for layer in SectionLayer::all() {
+            sums.sections[layer].add(ground.sections[layer]);
+        }
+        sums.geometric_errors_m.push(deviation.geometric_error_m);
+        if deviation.deviation_m >= self.least_measured_m {
+            sums.tightness.push(deviation.geometric_error_m / deviation.deviation_m);
+        }
+        sums.uncovered_nodes += deviation.uncovered_nodes;
+        self.sv_tails.add(id, record.classes.values().map(|class| class.sv_stored_bytes).sum());
+        for (&class, counted) in &record.classes {
+            self.classes.entry((level, class)).or_default().merge(counted);
+        }
+    }
 }

@@ -1,28 +1,44 @@
-//! Step *merge*: the coarse tiles above all subtrees, the sums over all records, the manifest, the package.
+//! Step *merge*: the heights of bridges and tunnels and their runs by tile, the coarse tiles above all subtrees, the sums over all records, the manifest, the
+//! package.
 
 use std::path::Path;
 
 use corniche_areas::ClassedLayer;
-use corniche_geom::TileId;
+use corniche_geom::{LatticePoint, TileId};
 use corniche_ground::{
     heights::pyramid::{HeightSums, all_there},
     terrain::{ground::GroundSource, recorded::RecordedTerrain},
 };
 use corniche_pieces::{
-    layers::{SectionLayer, layer_totals::LayerTotals},
+    ExtractError,
+    layers::{
+        SectionLayer,
+        tile_section::{LayerTotals, SectionOfTile, TileSection},
+    },
     roads::losses::LossFold,
+    spans::{
+        outer_ground::{OuterGrounds, WholeDem, whole_rectangle},
+        solving::SpanSolving,
+        span_network::SpanInputs,
+        totals::SpanTotals,
+    },
 };
-use corniche_spec::artifacts::{self, ArtifactError, Kind};
+use corniche_spec::{
+    Defect,
+    artifacts::{self, ArtifactError, Kind},
+};
 use corniche_store::{OpenMode, Scratch, open_own};
-use corniche_tileset::{LevelRecord, Manifest, ReliefLevels, WriteError, Writer};
+use corniche_tileset::{
+    LevelRecord, Manifest, OuterGround, PayloadBuilder, ReliefLevels, Section, Sections,
+    WriteError, Writer, decode,
+};
+use corniche_tin::Tin;
 use corniche_work::Stage;
 
 use super::{
     hashes,
-    manifest::{self, Outcome},
-    roads, spans,
-    sums::TileSums,
-    top,
+    manifest::{self, Outcome, TileSums},
+    roads, top,
 };
 use crate::{BuildError, context::Context, tile::record::TileRecord};
 
@@ -52,7 +68,7 @@ pub(crate) fn make(
     scratch: &dyn Scratch,
     target: &Target<'_>,
 ) -> Result<Manifest, BuildError> {
-    spans::make(context)?;
+    make_spans(context)?;
     let heights = match context.source {
         GroundSource::Dem(dem) => {
             let pyramid = context.pyramid_of(dem);
@@ -74,8 +90,7 @@ pub(crate) fn make(
                 .into());
             }
             tiles.add(id, &record);
-            if context.store.has(Kind::SpanSection.item(item)) {
-                let (_, own) = spans::added(context, id, payload(context, id)?)?;
+            if let Some((_, own)) = spans_of_tile(context, id)? {
                 tiles.add_spans(id.z(), own);
             }
             fold.add(&record.fates)?;
@@ -111,7 +126,7 @@ pub(crate) fn make(
         return Err(BuildError::NoGround { osm: osm.clone(), what });
     }
     // All inputs have been read. If none has changed, the recorded hashes are those of the bytes that were used.
-    context.inputs.check_unchanged()?;
+    context.opened.inputs.check_unchanged()?;
     write(context, target, &manifest)?;
     Ok(manifest)
 }
@@ -151,12 +166,6 @@ fn check_levels(
     Ok(())
 }
 
-/// The payload of a tile that has one.
-fn payload(context: &Context<'_>, id: TileId) -> Result<Vec<u8>, BuildError> {
-    let key = Kind::Payload.of_tile(id);
-    Ok(context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?)
-}
-
 /// Writes the package.
 fn write(
     context: &Context<'_>,
@@ -173,12 +182,95 @@ fn write(
         .map_err(failed)?;
     for item in payloads {
         context.observer.check()?;
-        let id = artifacts::tile_of(Kind::Payload.item(item))?;
-        let (bytes, _) = spans::added(context, id, payload(context, id)?)?;
-        writer.add(id, &bytes).map_err(failed)?;
+        let key = Kind::Payload.item(item);
+        let id = artifacts::tile_of(key)?;
+        let mut payload =
+            context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?;
+        if let Some((spans, _)) = spans_of_tile(context, id)? {
+            let mut builder = PayloadBuilder::with_all_of(&payload, id)?;
+            builder.add(spans)?;
+            payload = builder.seal()?.bytes;
+        }
+        writer.add(id, &payload).map_err(failed)?;
         context.observer.advance(Stage::Package, 1);
     }
     writer.finish().map_err(failed)?;
     context.observer.end(Stage::Package);
     Ok(())
+}
+
+/// Solves bridges and tunnels, and keeps the sections of all tiles, if they are wanted and not there yet. All tiles must be there. Tells of what is
+/// to be known of them.
+pub(crate) fn make_spans(context: &Context<'_>) -> Result<(), BuildError> {
+    if !context.settings.roads.spans || context.settings.osm.is_empty() {
+        return Ok(());
+    }
+    let key = Kind::SpanTotals.item(0);
+    let kept: Option<SpanTotals> = artifacts::get(context.store, key)?;
+    let is_kept = kept.is_some();
+    let totals = kept.map_or_else(|| solve(context), Ok)?;
+    if let Some(terrain) = context.source.package().filter(|_| totals.without_ground > 0) {
+        context.observer.warning(&totals.told_without_ground(terrain.path()));
+    }
+    if !is_kept {
+        artifacts::put(context.store, key, &totals)?;
+    }
+    for (reason, way_id, node_id) in totals.problems {
+        context.observer.defect(&Defect::Span { way_id, node_id, reason });
+    }
+    Ok(())
+}
+
+fn solve(context: &Context<'_>) -> Result<SpanTotals, BuildError> {
+    let grid = context.grid;
+    let data = grid.clip.map_or(grid.data_bounds, |clip| clip.whole_data_bounds);
+    let whole = whole_rectangle(context.frame(), &data);
+    let projection = context.source.projection(grid)?;
+    let inputs =
+        SpanInputs { store: context.store, frame: context.frame(), projection: &projection, whole };
+    let (threads, observer) = (context.threads(), context.observer);
+    let quantum_m = context.levels.quantum_m();
+    let tin = |id| tin_of(context, id);
+    let solve = |outer: &dyn OuterGrounds| {
+        SpanSolving { of: inputs, quantum_m, tin: &tin, outer, threads, observer }.solve()
+    };
+    match context.source {
+        GroundSource::Package(terrain) => {
+            let recorded = terrain.manifest().spans.as_ref();
+            Ok(solve(&recorded.map_or(&[][..], |spans| &spans.outer_grounds))?)
+        }
+        GroundSource::Dem(dem) => {
+            let levels = context.levels;
+            let dem = WholeDem { dem, plan: grid, levels, whole, threads, observer };
+            let mut totals = solve(&dem)?;
+            let places: Vec<LatticePoint> = totals.outer.iter().map(OuterGround::at).collect();
+            totals.inputs =
+                context.opened.inputs.hash_unused(&dem.needed_files(&places)?, observer)?;
+            Ok(totals)
+        }
+    }
+}
+
+/// The TIN of a tile, out of its payload; `None` where it has no ground. TINs by themselves are only with the parts that made them.
+fn tin_of(context: &Context<'_>, id: TileId) -> Result<Option<Tin>, ExtractError> {
+    let key = Kind::Payload.of_tile(id);
+    let Some(bytes) = context.store.get(key)? else { return Ok(None) };
+    let quantum_m = context.levels.quantum_m();
+    let payload = decode(&bytes, id, context.frame(), quantum_m, Sections::TERRAIN)
+        .map_err(|error| artifacts::damaged(key, &error))?;
+    Ok(payload.terrain.map(|terrain| terrain.tin).filter(|tin| !tin.is_empty()))
+}
+
+/// The section of spans of a tile, and how much is in it; `None` without spans.
+pub(crate) fn spans_of_tile(
+    context: &Context<'_>,
+    id: TileId,
+) -> Result<Option<(Section, SectionOfTile)>, BuildError> {
+    let kept = TileSection::get(SectionLayer::Spans, context.store, id)?;
+    let spans_of_tile = kept.map(|TileSection { section, parts, points }| {
+        let section = SectionLayer::Spans.section_of(section);
+        let bytes = section.size(id)?.stored;
+        Ok((section, SectionOfTile { parts, points, bytes }))
+    });
+    spans_of_tile.transpose()
 }

@@ -14,7 +14,7 @@ use crate::{BuildError, context::Context};
 
 /// Reads the photos beneath and at `scope` that are not there yet, and makes the rasters from there up to the scope's own.
 pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
-    let Some(photos) = context.photo.files() else { return Ok(()) };
+    let Some(photos) = context.opened.photo.files() else { return Ok(()) };
     let store = context.store;
     let mut ids = context.data().in_order_within(scope);
     let all = ids.len();
@@ -32,7 +32,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
 
 /// Makes the rasters that are missing beneath and at `scope`, from those that are there up.
 pub(crate) fn make_rasters(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
-    if context.photo.files().is_none() {
+    if context.opened.photo.files().is_none() {
         return Ok(());
     }
     let (store, data) = (context.store, context.data());

@@ -1,10 +1,5 @@
 //! The tiles of a build whose terrain comes from a package: each tile in one task, from the package's payload to its own.
 
-use std::{
-    collections::BTreeMap,
-    sync::{Mutex, PoisonError},
-};
-
 use corniche_drape::OwnedBorders;
 use corniche_geom::TileId;
 use corniche_ground::terrain::{
@@ -13,7 +8,7 @@ use corniche_ground::terrain::{
 };
 use corniche_spec::artifacts::Kind;
 use corniche_tileset::{Terrain, pmtiles_order};
-use corniche_work::{Stage, workers};
+use corniche_work::{Recent, Stage, workers};
 
 use crate::{
     BuildError,
@@ -21,8 +16,8 @@ use crate::{
     tile::{encode, mesh::Meshed, record::TileDeviation},
 };
 
-/// What an entry of [`Borders`] takes.
-const ENTRY_BYTES: u64 = 256;
+/// What the cells of a tile take.
+const CELLS_BYTES: u64 = size_of::<Option<BorderCells>>() as u64;
 
 /// Makes the tiles beneath and at `scope` that are not there yet.
 pub(crate) fn make(
@@ -84,39 +79,27 @@ fn make_tile(context: &Context<'_>, borders: &Borders<'_>, id: TileId) -> Result
 struct Borders<'a> {
     context: &'a Context<'a>,
     terrain: &'a RecordedTerrain,
-    /// The border cells of the tiles seen last; `None` for tiles without ground.
-    kept: Mutex<BTreeMap<TileId, Option<BorderCells>>>,
-    most: usize,
+    /// The border cells of the tiles seen last; `None` for tiles without ground. Tiles come along a Hilbert curve: what is needed again is so soon.
+    kept: Recent<TileId, Option<BorderCells>>,
 }
 
 impl<'a> Borders<'a> {
     fn new(context: &'a Context<'a>, terrain: &'a RecordedTerrain) -> Self {
-        let most = context.memory().grounds / ENTRY_BYTES;
-        let most = usize::try_from(most).unwrap_or(usize::MAX);
-        Self { context, terrain, kept: Mutex::default(), most }
+        Self { context, terrain, kept: Recent::new(context.memory().grounds) }
     }
 
     /// The payload of a tile, and its ground decoded; `None` where it has none.
     fn ground(&self, id: TileId) -> Result<Option<(Vec<u8>, Terrain)>, BuildError> {
         let ground = self.terrain.ground(id)?;
-        let cells = ground.as_ref().map(|(_, ground)| BorderCells::of(&ground.tin));
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        // Tiles come along a Hilbert curve: what is needed again is found again soon.
-        if kept.len() >= self.most {
-            kept.clear();
-        }
-        kept.insert(id, cells);
+        let cells = || Ok::<_, BuildError>(cells_of(ground.as_ref()));
+        self.kept.get(id, cells, |_| CELLS_BYTES)?;
         Ok(ground)
     }
 
     /// The cells of a tile; `None` where it has no ground.
     fn cells(&self, id: TileId) -> Result<Option<BorderCells>, BuildError> {
-        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner).get(&id).copied();
-        match kept {
-            Some(cells) => Ok(cells),
-            // Outside the lock: two threads may read the same tile, which is less than making all others wait.
-            None => Ok(self.ground(id)?.map(|(_, ground)| BorderCells::of(&ground.tin))),
-        }
+        let read = || Ok::<_, BuildError>(cells_of(self.terrain.ground(id)?.as_ref()));
+        Ok(*self.kept.get(id, read, |_| CELLS_BYTES)?)
     }
 
     /// What a tile owns of its borders, by the ground on both sides of them.
@@ -135,4 +118,8 @@ impl<'a> Borders<'a> {
         let has_ground = |other| Ok(self.cells(other)?.is_some());
         Ok(around.owned(encode::neighbours(self.context, id, has_ground)?))
     }
+}
+
+fn cells_of(ground: Option<&(Vec<u8>, Terrain)>) -> Option<BorderCells> {
+    ground.map(|(_, ground)| BorderCells::of(&ground.tin))
 }

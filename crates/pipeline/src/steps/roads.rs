@@ -55,7 +55,6 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
         projection: context.projection,
         levels: context.levels,
         lengths: &context.lengths(),
-        data_bounds: context.data().bounds(&frame),
         node_bounds: context.node_bounds(),
         clip: context.clip(),
         bounds_deg: context.settings.terrain.plan.bounds_deg,

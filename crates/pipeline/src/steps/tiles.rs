@@ -7,14 +7,13 @@ use corniche_ground::{heights::finest::FinestHeights, terrain::ground::GroundSou
 use corniche_spec::artifacts::Kind;
 use corniche_work::{Stage, workers};
 
-use super::{coarse_tiles, recorded_tiles, roads, tins, top};
+use super::{coarse_tiles, recorded_tiles, roads, top};
 use crate::{
     BuildError,
     context::Context,
     tile::{
         encode,
-        grounds::Grounds,
-        measure::Column,
+        measure::{Column, Grounds},
         mesh::mesh_tile,
         record::{Seen, TileDeviation, TileRecord},
         relief,
@@ -36,7 +35,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
     for level in scope.z()..context.frame().max_level() {
         coarse.extend(context.data().above(level).in_order_within(scope));
     }
-    tins::make(context, coarse)?;
+    top::make_tins(context, coarse)?;
     make_finest(context, dem, scope)?;
     coarse_tiles::make(context, scope)
 }

@@ -1,13 +1,19 @@
-//! Step *top*: what all subtrees of heights add up to, and the rasters and TINs of the tiles above them.
+//! Step *top*: what all subtrees of heights add up to, and the rasters and TINs of the tiles above them. Finest tiles need the TINs of all their ancestors.
 
 use std::collections::BTreeSet;
 
 use corniche_geom::TileId;
+use corniche_ground::heights::rasters;
 use corniche_spec::artifacts::{ArtifactError, Kind, damaged};
 use corniche_tileset::{pmtiles_order, tile_of_order};
+use corniche_work::{Stage, workers};
 
-use super::{photos, tins};
-use crate::{BuildError, context::Context};
+use super::photos;
+use crate::{
+    BuildError,
+    context::Context,
+    tile::mesh::{Meshed, mesh_tile},
+};
 
 /// Checks the heights of all subtrees, which must be there, and makes what lies above them.
 pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
@@ -23,7 +29,7 @@ pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
             return Err(BuildError::NoHeights { dem: context.settings.terrain_files() });
         }
         pyramid.make_rasters(TileId::ROOT)?;
-        tins::make(context, above_subtrees(context))?;
+        make_tins(context, above_subtrees(context))?;
     }
     photos::make_rasters(context, TileId::ROOT)?;
     Ok(context.store.put(Kind::Top.item(0), &step_m.to_le_bytes())?)
@@ -59,4 +65,28 @@ fn above_subtrees(context: &Context<'_>) -> Vec<TileId> {
     let mut above: Vec<TileId> = above.into_iter().collect();
     above.sort_unstable_by_key(|&id| pmtiles_order(id));
     above
+}
+
+/// Triangulates those of some coarse tiles of the data that are not there yet.
+pub(crate) fn make_tins(context: &Context<'_>, mut ids: Vec<TileId>) -> Result<(), BuildError> {
+    if ids.is_empty() {
+        return Ok(());
+    }
+    let (store, data) = (context.store, context.data());
+    let all = ids.len();
+    ids.retain(|&id| !store.has(Kind::Tin.of_tile(id)));
+    workers::make_missing(
+        context.observer,
+        Stage::CoarseTins,
+        context.threads(),
+        (&ids, all),
+        || Ok(()),
+        |(), &id| -> Result<(), BuildError> {
+            let meshed = match rasters::with_halo(store, &data, id, 1)? {
+                Some(heights) => mesh_tile(&heights, id, context.levels)?,
+                None => Meshed::default(),
+            };
+            Ok(meshed.put(store, id)?)
+        },
+    )
 }

@@ -19,7 +19,7 @@ use corniche_pieces::{
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_spec::artifacts::Kind;
-use corniche_tileset::{EncodedTile, PayloadContext, Relief, Terrain, TilePayload};
+use corniche_tileset::{EncodedTile, PayloadContext, PayloadSizes, Relief, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
 use super::{
@@ -72,41 +72,35 @@ pub(crate) fn with_ground(
         quantum_m: levels.quantum_m(),
         metres_per_unit: context.grid.metres_per_unit,
     };
-    let encoded = match earlier {
-        Some(earlier) => corniche_tileset::encode_with_ground_of(earlier, &payload, &encoding)?,
-        None => corniche_tileset::encode(&payload, &encoding)?,
-    };
-    let classes = class_sums(laid_classes, &payload, &encoded);
-    let photo = textures::of_tile(context.textures(), id, earlier)?;
-    let photo_bytes = photo.as_ref().map_or(0, |photo| photo.bytes().len() as u64);
-    let mut bytes = encoded.bytes;
-    if let Some(photo) = photo {
-        bytes = corniche_tileset::with_photo(&bytes, id, &photo)?;
+    let mut builder = corniche_tileset::encode_sections(&payload, &encoding, earlier)?;
+    if let Some(photo) = textures::of_tile(context.textures(), id, earlier)? {
+        builder.add(photo)?;
     }
     let mut sections = ByLayer::<SectionOfTile>::default();
     for layer in SectionLayer::of_extract() {
-        let Some(TileSection { section, parts, points }) =
+        if let Some(TileSection { section, parts, points }) =
             TileSection::get(layer, context.store, id)?
-        else {
-            continue;
-        };
-        let size;
-        (bytes, size) = layer.add_to(&bytes, id, section)?;
-        sections[layer] = SectionOfTile { parts, points, bytes: size.stored };
+        {
+            builder.add(layer.section_of(section))?;
+            sections[layer] = SectionOfTile { parts, points, bytes: 0 };
+        }
+    }
+    let EncodedTile { bytes, sizes } = builder.seal()?;
+    for layer in SectionLayer::of_extract() {
+        sections[layer].bytes = layer.size_in(&sizes).stored;
     }
     context.store.put(Kind::Payload.of_tile(id), &bytes)?;
-    let (terrain_bytes, relief_bytes) = (encoded.sizes.terrain.stored, encoded.sizes.relief.stored);
     Ok(TileRecord {
         ground: Some(GroundRecord {
             vertices,
             triangles,
-            terrain_bytes,
-            relief_bytes,
-            photo_bytes,
+            terrain_bytes: sizes.terrain.stored,
+            relief_bytes: sizes.relief.stored,
+            photo_bytes: sizes.photo.stored,
             sections,
             deviation,
         }),
-        classes,
+        classes: class_sums(laid_classes, &payload, &sizes),
         fates,
         levels: Vec::new(),
     })
@@ -169,7 +163,7 @@ fn has_ground(context: &Context<'_>, id: TileId) -> Result<bool, BuildError> {
 fn class_sums(
     mut classes: BTreeMap<u8, ClassSums>,
     payload: &TilePayload,
-    encoded: &EncodedTile,
+    sizes: &PayloadSizes,
 ) -> BTreeMap<u8, ClassSums> {
     for road in &payload.roads_geo {
         classes.entry(road.class.number()).or_default().geo_vertices +=
@@ -182,8 +176,8 @@ fn class_sums(
     for class in FunctionalRoadClass::all() {
         let index = usize::from(class.number());
         let shares = [
-            share(encoded.sizes.roads_geo.stored, &encoded.sizes.geo_class_bytes, index),
-            share(encoded.sizes.roads_sv.stored, &encoded.sizes.sv_class_bytes, index),
+            share(sizes.roads_geo.stored, &sizes.geo_class_bytes, index),
+            share(sizes.roads_sv.stored, &sizes.sv_class_bytes, index),
         ];
         if shares != [0, 0] {
             let sums = classes.entry(class.number()).or_default();

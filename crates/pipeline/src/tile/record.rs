@@ -11,7 +11,6 @@ use corniche_pieces::{
 use corniche_spec::artifacts::{self, ArtifactError, Kind};
 use corniche_store::Artifacts;
 use corniche_tileset::SampleSums;
-use corniche_tin::Deviation;
 use serde::{Deserialize, Serialize};
 
 /// The record of a tile. Sums over tiles are sums of records, in whole numbers, maxima and minima: they do not depend on
@@ -79,15 +78,6 @@ impl Seen {
         self.max_abs_m = self.max_abs_m.max(other.max_abs_m);
         self.uncovered_nodes += other.uncovered_nodes;
         self.range_m = union(self.range_m, other.range_m);
-    }
-
-    /// What a measurement of nodes gives; `uncovered_nodes` without those that belong to the next tile.
-    pub(crate) fn of(
-        deviation: Deviation,
-        range_m: Option<[f32; 2]>,
-        uncovered_nodes: u64,
-    ) -> Self {
-        Self { max_abs_m: deviation.max_abs_m, range_m, uncovered_nodes }
     }
 }
 

@@ -412,10 +412,11 @@ fn a_payload_with_the_stored_ground_is_the_payload_encoded_anew() {
         let ground =
             corniche_tileset::decode(bytes, *id, &manifest.frame, quantum_m, Sections::TERRAIN);
         assert_eq!(ground.unwrap().terrain, tile.terrain);
-        let again = corniche_tileset::encode_with_ground_of(bytes, tile, &context).unwrap();
+        let with_ground_of = corniche_tileset::encode_sections;
+        let again = with_ground_of(tile, &context, Some(bytes)).unwrap().seal().unwrap();
         assert_eq!(again, corniche_tileset::encode(tile, &context).unwrap());
         assert!(again.bytes == *bytes, "tile {id}");
         let bare = corniche_tileset::TilePayload { terrain: None, ..tile.clone() };
-        assert!(corniche_tileset::encode_with_ground_of(&bytes[1..], &bare, &context).is_err());
+        assert!(with_ground_of(&bare, &context, Some(&bytes[1..])).is_err());
     }
 }

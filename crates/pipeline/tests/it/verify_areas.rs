@@ -2,7 +2,7 @@
 //! the expected checks are broken.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-use corniche_testing::some_of;
+use corniche_testing::{package::with_section, some_of};
 use std::{collections::BTreeMap, fs, path::PathBuf};
 
 use crate::support::{
@@ -16,7 +16,7 @@ use corniche_gis::Polygon;
 use corniche_pipeline::build;
 use corniche_tileset::{
     AreaRecord, AreaRings, FilePackage, Manifest, Sections, Writer, decode_areas, encode_areas,
-    payload_sizes, pmtiles_order, with_areas,
+    payload_sizes, pmtiles_order,
 };
 use corniche_verify::{
     CheckId, Needs, VerifyError, VerifyOsm, VerifyReport, VerifySettings, verify,
@@ -193,7 +193,7 @@ impl Tile {
             return self.whole.clone();
         }
         match encode_areas(self.id, frame, 1, &self.areas).unwrap() {
-            Some(section) => with_areas(&self.without_areas, self.id, section).unwrap().0,
+            Some(section) => with_section(&self.without_areas, self.id, section),
             None => self.without_areas.clone(),
         }
     }

@@ -15,10 +15,10 @@ use crate::support::{
 use corniche_geom::TileId;
 use corniche_pipeline::build;
 use corniche_spec::{PhotoChoice, PhotoSettings};
-use corniche_testing::ColourImage;
+use corniche_testing::{ColourImage, package::with_section};
 use corniche_tileset::{
-    FilePackage, Manifest, Photo, PhotoSection, Sections, TilePayload, Writer, decode_photo,
-    encode_photo, photo_section, pmtiles_order, with_photo,
+    FilePackage, Manifest, Photo, Section, Sections, TilePayload, Writer, decode_photo,
+    encode_photo, photo_section, pmtiles_order,
 };
 use corniche_verify::{CheckId, Needs, VerifyError, VerifyReport, VerifySettings, verify};
 use corniche_work::Silent;
@@ -29,7 +29,7 @@ struct Apart {
     folder: TempDir,
     manifest: Manifest,
     /// Payloads without photos, and the photos.
-    tiles: BTreeMap<u64, (TileId, Vec<u8>, Option<PhotoSection>)>,
+    tiles: BTreeMap<u64, (TileId, Vec<u8>, Option<Section>)>,
 }
 
 impl Apart {
@@ -103,7 +103,7 @@ impl Apart {
         let mut writer = Writer::create(&path, &self.manifest).unwrap();
         for (id, payload, photo) in self.tiles.values() {
             let bytes = match photo {
-                Some(photo) => with_photo(payload, *id, photo).unwrap(),
+                Some(photo) => with_section(payload, *id, photo.clone()),
                 None => payload.clone(),
             };
             writer.add(*id, &bytes).unwrap();
@@ -112,7 +112,7 @@ impl Apart {
         path
     }
 
-    fn photo_mut(&mut self, id: TileId) -> &mut Option<PhotoSection> {
+    fn photo_mut(&mut self, id: TileId) -> &mut Option<Section> {
         &mut self.tiles.get_mut(&pmtiles_order(id)).unwrap().2
     }
 
@@ -121,7 +121,7 @@ impl Apart {
         let section = self.photo_mut(id).take().unwrap();
         let empty = &self.tiles[&pmtiles_order(id)].1;
         let mut photo =
-            decode_photo(&with_photo(empty, id, &section).unwrap(), id).unwrap().unwrap();
+            decode_photo(&with_section(empty, id, section.clone()), id).unwrap().unwrap();
         change(&mut photo);
         let changed = encode_photo(id, &photo, 85).unwrap();
         self.record(id, section.bytes().len(), changed.as_ref().map_or(0, |c| c.bytes().len()));
@@ -217,7 +217,7 @@ fn a_photo_that_cannot_be_decoded() {
     // The beginning of the JPEG picture.
     let at = bytes.windows(2).position(|pair| pair == [0xff, 0xd8]).unwrap();
     bytes[at] = 0;
-    *apart.photo_mut(child(2)) = Some(PhotoSection::from_bytes(bytes));
+    *apart.photo_mut(child(2)) = Some(Section::of_photo(bytes));
     apart.assert_breaks(&[CheckId::PhotoWhole]);
 }
 

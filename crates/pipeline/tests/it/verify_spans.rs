@@ -7,9 +7,10 @@ use std::path::PathBuf;
 use corniche_geom::{LatticePoint, TileId};
 use corniche_pipeline::build;
 use corniche_roads::{FunctionalRoadClass, Structure};
+use corniche_testing::package::with_section;
 use corniche_tileset::{
     FilePackage, Manifest, RoadRecord, Sections, SpanCounts, SpanHeight, SpanRun, Writer,
-    decode_spans, encode_spans, payload_sizes, with_spans,
+    decode_spans, encode_spans, payload_sizes,
 };
 use corniche_tin::{Placement, Surface};
 use corniche_verify::{CheckId, Needs};
@@ -90,7 +91,7 @@ impl Apart {
         let before = sums(runs, bytes);
         change(runs);
         *bytes = match encode_spans(*id, &self.manifest.frame, runs).unwrap() {
-            Some(section) => with_spans(without_spans, *id, section).unwrap().0,
+            Some(section) => with_section(without_spans, *id, section),
             None => without_spans.clone(),
         };
         let after = sums(runs, bytes);

@@ -40,8 +40,6 @@ pub(crate) struct OpenPart {
     pending: Mutex<Vec<Entry>>,
     /// How many entries the journal has. Who syncs holds it.
     journaled: Mutex<u64>,
-    /// The same for those who only want to know how long it is.
-    journal_bytes: AtomicU64,
     synced_at: Mutex<Instant>,
     /// A sync failed: what the system keeps of the unsynced writes is unknown, so nothing may be built on them.
     /// The text says why.
@@ -150,7 +148,6 @@ impl OpenPart {
             end: AtomicU64::new(end),
             pending: Mutex::default(),
             journaled: Mutex::new(journaled),
-            journal_bytes: AtomicU64::new(journal_bytes(journaled)),
             synced_at: Mutex::new(Instant::now()),
             failed: OnceLock::new(),
         }
@@ -159,11 +156,6 @@ impl OpenPart {
     /// The file with its artifacts.
     pub(crate) fn data(&self) -> &OpenFile {
         &self.data
-    }
-
-    /// Bytes of its two files.
-    pub(crate) fn disk_bytes(&self) -> u64 {
-        self.end.load(Ordering::Relaxed) + self.journal_bytes.load(Ordering::Relaxed)
     }
 
     /// Adds an artifact, and makes durable what is there if the last time is long ago and nobody else is at it.
@@ -221,7 +213,6 @@ impl OpenPart {
             self.journal(&batch, *journaled)
                 .inspect_err(|error| self.give_up(error.to_string()))?;
             *journaled += batch.len() as u64;
-            self.journal_bytes.store(journal_bytes(*journaled), Ordering::Relaxed);
         }
         *locked(&self.synced_at) = Instant::now();
         Ok(())

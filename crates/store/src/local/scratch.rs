@@ -2,10 +2,7 @@
 
 use std::{
     io,
-    sync::{
-        Arc,
-        atomic::{AtomicU64, Ordering},
-    },
+    sync::atomic::{AtomicU64, Ordering},
 };
 
 use crate::{Scratch, Span, files::OpenFile};
@@ -16,14 +13,12 @@ use crate::{Scratch, Span, files::OpenFile};
 pub struct LocalScratch {
     file: OpenFile,
     end: AtomicU64,
-    /// What all scratch files of the store take.
-    total_bytes: Arc<AtomicU64>,
 }
 
 impl LocalScratch {
     /// Scratch space in a file that is empty and owned.
-    pub(crate) fn new(file: OpenFile, total_bytes: Arc<AtomicU64>) -> Self {
-        Self { file, end: AtomicU64::new(0), total_bytes }
+    pub(crate) fn new(file: OpenFile) -> Self {
+        Self { file, end: AtomicU64::new(0) }
     }
 }
 
@@ -32,7 +27,6 @@ impl Scratch for LocalScratch {
         let length = bytes.len() as u64;
         // Reserve first, so that writers do not wait for each other's disk.
         let offset = self.end.fetch_add(length, Ordering::Relaxed);
-        self.total_bytes.fetch_add(length, Ordering::Relaxed);
         self.file.write_all_at(bytes, offset)?;
         Ok(Span { offset, length })
     }
@@ -53,7 +47,6 @@ impl Scratch for LocalScratch {
 
 impl Drop for LocalScratch {
     fn drop(&mut self) {
-        self.total_bytes.fetch_sub(*self.end.get_mut(), Ordering::Relaxed);
         // If it cannot be removed now, it is removed when the store is opened the next time.
         let _ = self.file.files().remove(self.file.path());
     }

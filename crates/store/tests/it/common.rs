@@ -12,7 +12,10 @@ use std::{
     time::Duration,
 };
 
-use corniche_store::{Artifacts, Key, LocalStore, StoreError, StoredPlan};
+use corniche_store::{
+    Artifacts, Disk, Folder, Hold, Key, LocalStore, OwnPart, PartsPlace, PlanHash, SealedParts,
+    StoreError, StoredPlan,
+};
 use corniche_testing::{Random, disks::MemoryDisk};
 
 pub(crate) const NOTHING: [PathBuf; 0] = [];
@@ -49,6 +52,21 @@ pub(crate) fn create(disk: &MemoryDisk, interval: Duration) -> Result<LocalStore
 
 pub(crate) fn open(disk: &MemoryDisk, interval: Duration) -> Result<LocalStore, StoreError> {
     LocalStore::open(disk.disk(), folder(), &plan().hash, interval)
+}
+
+/// Opens all sealed parts of some folders as one, and a part of its own to write if asked, where several processes may work at once.
+pub(crate) fn open_parts(
+    disk: Arc<dyn Disk>,
+    folders: &[&Path],
+    plan: &PlanHash,
+    own: Option<OwnPart<'_>>,
+) -> Result<LocalStore, StoreError> {
+    let folders: Vec<Folder> =
+        folders.iter().map(|folder| Folder::new(Arc::clone(&disk), folder)).collect();
+    let places: Vec<&dyn PartsPlace> =
+        folders.iter().map(|folder| folder as &dyn PartsPlace).collect();
+    let sealed = SealedParts { places: &places, is_needed: &|_| true };
+    LocalStore::open_places(disk, sealed, plan, own.map(|own| (own, Hold::Shared)))
 }
 
 /// As a build does it: goes on if there is a store, else begins one.

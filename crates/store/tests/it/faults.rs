@@ -232,14 +232,14 @@ fn a_crash_while_a_part_is_sealed_leaves_a_whole_part_or_none() {
         let make = |disk: &MemoryDisk| {
             let (plan, interval) = (&plan(), NEVER);
             let own = OwnPart { folder: folder(), name: "heights", plan, interval };
-            let store = LocalStore::open_parts(disk.disk(), &[], &plan.hash, Some(own))?;
+            let store = open_parts(disk.disk(), &[], &plan.hash, Some(own))?;
             build(&store, &mut |_| {})?;
             store.seal()
         };
         disk.fail_after(random.below(330) as u64, Failure::Death);
         let result = make(&disk);
         let disk = disk.after_crash(&mut random);
-        let read = LocalStore::open_parts(disk.disk(), &[folder()], &plan().hash, None);
+        let read = open_parts(disk.disk(), &[folder()], &plan().hash, None);
         let there = match read {
             Ok(store) => check_all_right(&store),
             Err(StoreError::NoStore { .. }) => 0,
@@ -250,7 +250,7 @@ fn a_crash_while_a_part_is_sealed_leaves_a_whole_part_or_none() {
         none += u32::from(there == 0);
         // Made again, it is the same part.
         make(&disk).unwrap();
-        let store = LocalStore::open_parts(disk.disk(), &[folder()], &plan().hash, None).unwrap();
+        let store = open_parts(disk.disk(), &[folder()], &plan().hash, None).unwrap();
         assert_eq!(check_all_right(&store), ALL);
         let parts =
             disk.paths().into_iter().filter(|path| path.starts_with(folder().join("parts")));
@@ -267,8 +267,7 @@ fn sealing_that_fails_at_any_call_can_be_done_again() {
             let mut disk = empty_disk();
             let (plan, interval) = (&plan(), NEVER);
             let own = OwnPart { folder: folder(), name: "heights", plan, interval };
-            let open_part =
-                |disk: &MemoryDisk| LocalStore::open_parts(disk.disk(), &[], &plan.hash, Some(own));
+            let open_part = |disk: &MemoryDisk| open_parts(disk.disk(), &[], &plan.hash, Some(own));
             let store = open_part(&disk).unwrap();
             build(&store, &mut |_| {}).unwrap();
             disk.fail_after(call, failure);
@@ -285,7 +284,7 @@ fn sealing_that_fails_at_any_call_can_be_done_again() {
             let store = open_part(&disk).unwrap();
             assert_eq!(check_all_right(&store), ALL);
             store.seal().unwrap();
-            let parts = LocalStore::open_parts(disk.disk(), &[folder()], &plan.hash, None).unwrap();
+            let parts = open_parts(disk.disk(), &[folder()], &plan.hash, None).unwrap();
             assert_eq!(check_all_right(&parts), ALL);
             let inside = |path: &Path| path.starts_with(folder().join("parts"));
             let (parts, rest): (Vec<_>, Vec<_>) =

@@ -14,7 +14,7 @@ fn own<'a>(folder: &'a Path, name: &'a str, plan: &'a StoredPlan) -> OwnPart<'a>
 }
 
 fn open_part(disk: &MemoryDisk, folder: &Path, name: &str) -> Result<LocalStore, StoreError> {
-    LocalStore::open_parts(disk.disk(), &[], &plan().hash, Some(own(folder, name, &plan())))
+    open_parts(disk.disk(), &[], &plan().hash, Some(own(folder, name, &plan())))
 }
 
 /// Makes and seals a part that holds `keys`, in this order.
@@ -37,7 +37,7 @@ fn parts_of_several_folders_are_read_as_one() {
     make_part(&disk, first, "heights-1-0-0", &keys(1, 0..40));
     make_part(&disk, first, "heights-1-1-0", &keys(1, 40..70));
     make_part(&disk, second, "roads", &keys(2, 0..3000));
-    let store = LocalStore::open_parts(disk.disk(), &[first, second], &plan().hash, None).unwrap();
+    let store = open_parts(disk.disk(), &[first, second], &plan().hash, None).unwrap();
     let all = all_of(keys(1, 0..70).into_iter().chain(keys(2, 0..3000)));
     check_holds(&store, &all);
     let error = store.put(key(3, 0), b"more").unwrap_err();
@@ -48,8 +48,7 @@ fn parts_of_several_folders_are_read_as_one() {
     // And with a part of its own, which may lie in a third folder.
     let (folder, plan) = (Path::new("/data/third"), plan());
     let own = own(folder, "merge", &plan);
-    let store =
-        LocalStore::open_parts(disk.disk(), &[first, second], &plan.hash, Some(own)).unwrap();
+    let store = open_parts(disk.disk(), &[first, second], &plan.hash, Some(own)).unwrap();
     store.put(key(5, 0), &artifact(key(5, 0))).unwrap();
     let mut all = all;
     all.extend(all_of([key(5, 0)]));
@@ -176,18 +175,17 @@ fn parts_of_another_plan_are_refused_by_name() {
     make_part(&disk, first, "heights", &keys(1, 0..4));
     let other = StoredPlan { hash: [9; 32], bytes: Vec::new() };
     let store =
-        LocalStore::open_parts(disk.disk(), &[], &other.hash, Some(own(second, "roads", &other)))
-            .unwrap();
+        open_parts(disk.disk(), &[], &other.hash, Some(own(second, "roads", &other))).unwrap();
     store.put(key(2, 0), b"of the other plan").unwrap();
     let path = store.seal().unwrap().unwrap();
 
     let both = [first, second];
-    let error = LocalStore::open_parts(disk.disk(), &both, &plan().hash, None).unwrap_err();
+    let error = open_parts(disk.disk(), &both, &plan().hash, None).unwrap_err();
     assert!(matches!(&error, StoreError::OtherPlan { path } if path == second), "{error}");
     // Copied into the right folder, it is still the wrong part.
     let copy = first.join("parts").join(path.file_name().unwrap());
     disk.set_content(&copy, &disk.content(&path).unwrap());
-    let error = LocalStore::open_parts(disk.disk(), &[first], &plan().hash, None).unwrap_err();
+    let error = open_parts(disk.disk(), &[first], &plan().hash, None).unwrap_err();
     assert!(matches!(&error, StoreError::OtherPlan { path } if *path == copy), "{error}");
 }
 
@@ -200,7 +198,7 @@ fn two_parts_that_contradict_each_other_are_refused() {
     store.put(key(1, 2), b"not what the plan gives").unwrap();
     store.seal().unwrap();
     let both = [first, second];
-    let error = LocalStore::open_parts(disk.disk(), &both, &plan().hash, None).unwrap_err();
+    let error = open_parts(disk.disk(), &both, &plan().hash, None).unwrap_err();
     assert!(matches!(error, StoreError::Differs { kind: 1, item: 2, .. }), "{error}");
 }
 
@@ -216,7 +214,7 @@ fn any_wrong_byte_of_a_sealed_part_is_noticed() {
         let mut wrong = bytes.clone();
         wrong[at] ^= 0x20;
         disk.set_content(&path, &wrong);
-        let opened = LocalStore::open_parts(disk.disk(), &[folder()], &plan().hash, None);
+        let opened = open_parts(disk.disk(), &[folder()], &plan().hash, None);
         let error = match opened {
             Err(error) => error,
             Ok(store) => keys(1, 0..5).into_iter().find_map(|key| store.get(key).err()).unwrap(),
@@ -231,8 +229,7 @@ fn any_wrong_byte_of_a_sealed_part_is_noticed() {
     }
     for length in [0, 10, 48, 60, bytes.len() - 1] {
         disk.set_content(&path, &bytes[..length]);
-        let error =
-            LocalStore::open_parts(disk.disk(), &[folder()], &plan().hash, None).unwrap_err();
+        let error = open_parts(disk.disk(), &[folder()], &plan().hash, None).unwrap_err();
         assert!(matches!(&error, StoreError::Damaged { .. }), "{error}");
         let said = error.to_string();
         assert!(said.contains("remove the file and make the part again"), "{said}");
@@ -271,9 +268,8 @@ fn a_name_that_is_no_file_name_is_refused() {
 fn parts_work_on_the_file_system_of_the_machine() {
     let temporary = tempfile::tempdir().unwrap();
     let (folder, plan) = (temporary.path().join("store"), plan());
-    let open = |name| {
-        LocalStore::open_parts(system(), &[], &plan.hash, Some(own(&folder, name, &plan))).unwrap()
-    };
+    let open =
+        |name| open_parts(system(), &[], &plan.hash, Some(own(&folder, name, &plan))).unwrap();
     let stores = [open("heights"), open("heights"), open("roads")];
     for (store, kind) in stores.iter().zip([1, 1, 2]) {
         for key in keys(kind, 0..50) {
@@ -282,7 +278,7 @@ fn parts_work_on_the_file_system_of_the_machine() {
     }
     let paths = stores.map(|store| store.seal().unwrap().unwrap());
     assert_eq!(paths[0], paths[1]);
-    let store = LocalStore::open_parts(system(), &[&folder], &plan.hash, None).unwrap();
+    let store = open_parts(system(), &[&folder], &plan.hash, None).unwrap();
     check_holds(&store, &all_of(keys(1, 0..50).into_iter().chain(keys(2, 0..50))));
     assert_eq!(std::fs::read_dir(folder.join("parts")).unwrap().count(), 2);
     assert_eq!(LocalStore::discard(system(), &folder).unwrap(), NOTHING);

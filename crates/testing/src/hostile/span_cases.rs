@@ -3,7 +3,7 @@
 use std::iter;
 
 use corniche_geom::TileId;
-use corniche_tileset::{SpansSection, limits::MAX_SPAN_POINTS, with_spans};
+use corniche_tileset::limits::MAX_SPAN_POINTS;
 
 use crate::{package, payload::Section, pmtiles::put_varint, random::Random};
 
@@ -108,9 +108,9 @@ pub fn attack(number: usize) -> Case {
         numbers(&[]),
     ];
     // Beside roads: without any, no bridge is drawn.
-    let spans = SpansSection::from_bytes(section(runs as u64, &columns));
+    let spans = corniche_tileset::Section::of_spans(section(runs as u64, &columns));
     let tile = package::encoded(TileId::ROOT);
-    let bytes = with_tile(with_spans(&tile, TileId::ROOT, spans).unwrap().0);
+    let bytes = with_tile(package::with_section(&tile, TileId::ROOT, spans));
     let outcome = if count > MAX_SPAN_POINTS {
         Outcome::Refused("points of a section")
     } else {

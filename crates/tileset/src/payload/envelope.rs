@@ -1,7 +1,5 @@
 //! Header, section table and sections of a payload, without the contents of sections.
 
-#[cfg(feature = "write")]
-use std::borrow::Cow;
 use std::io::Read;
 
 use corniche_geom::TileId;
@@ -16,12 +14,6 @@ use crate::payload::section_kind::{Kind, TwoKinds};
 pub(crate) const MAGIC: [u8; 4] = *b"CRNT";
 /// Version of the payload's layout.
 pub(crate) const VERSION: u16 = 1;
-/// Bytes before the section table.
-#[cfg(feature = "write")]
-const HEADER_BYTES: usize = 16;
-/// Bytes of one entry of the section table.
-#[cfg(feature = "write")]
-const ENTRY_BYTES: usize = 20;
 /// Stored bytes follow without compression.
 pub(crate) const STORED: u8 = 0;
 /// Stored bytes are one zstd frame.
@@ -31,13 +23,13 @@ pub(crate) const ZSTD: u8 = 1;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StoredSection<'a> {
     kind: u16,
-    compression: u8,
-    raw_length: u32,
-    checksum: u32,
+    pub(crate) compression: u8,
+    pub(crate) raw_length: u32,
+    pub(crate) checksum: u32,
     /// How many bytes it has in a whole payload.
     stored_length: usize,
     /// The bytes themselves; none where the payload was read without its last section.
-    bytes: &'a [u8],
+    pub(crate) bytes: &'a [u8],
 }
 
 impl StoredSection<'_> {
@@ -255,120 +247,4 @@ impl SectionSize {
     pub(crate) fn or(self, other: Self) -> Self {
         if self.stored > 0 { self } else { other }
     }
-}
-
-/// zstd's level: from 16 on it splits blocks where the statistics change, which suits streams laid end to end; 19
-/// saves less than 1 % more at twice the time.
-#[cfg(feature = "write")]
-const COMPRESSION_LEVEL: i32 = 16;
-
-/// What a section is made of.
-#[cfg(feature = "write")]
-pub(crate) enum Content<'a> {
-    /// Bytes before compression.
-    Raw(Vec<u8>),
-    /// Bytes that do not become smaller by compression.
-    Packed(Cow<'a, [u8]>),
-    /// Bytes as another payload of the tile has them.
-    Stored(StoredSection<'a>),
-}
-
-/// The payload of a tile with one more section, and the sizes of all; `already` says in an error that it has one of this kind.
-#[cfg(feature = "write")]
-pub(crate) fn with_section(
-    payload: &[u8],
-    tile: TileId,
-    (kind, content): (Kind, Content<'_>),
-    already: &'static str,
-) -> Result<(Vec<u8>, Vec<SectionSize>), crate::payload::damage::EncodeError> {
-    use crate::payload::damage::EncodeError;
-
-    let refused = |what| EncodeError::Unencodable { tile, section: kind.name(), what };
-    let sections = open(payload, tile).map_err(|_| refused("beside a damaged payload"))?;
-    let mut contents = Vec::with_capacity(sections.len() + 1);
-    for stored in sections {
-        let known =
-            stored.known_kind().ok_or_else(|| refused("beside a section of unknown kind"))?;
-        if known == kind {
-            return Err(refused(already));
-        }
-        contents.push((known, Content::Stored(stored)));
-    }
-    contents.push((kind, content));
-    seal(tile, &contents)
-}
-
-/// Puts header, table and sections together, SV roads last; compresses each section where that makes it smaller. The sizes are in the order of `sections`.
-#[cfg(feature = "write")]
-pub(crate) fn seal(
-    id: TileId,
-    sections: &[(Kind, Content<'_>)],
-) -> Result<(Vec<u8>, Vec<SectionSize>), crate::payload::damage::EncodeError> {
-    use crate::payload::damage::EncodeError;
-
-    let mut table = Vec::with_capacity(HEADER_BYTES + sections.len() * ENTRY_BYTES + 4);
-    table.extend(MAGIC);
-    table.extend(VERSION.to_le_bytes());
-    table.extend([sections.len() as u8, id.z()]);
-    table.extend(id.x().to_le_bytes());
-    table.extend(id.y().to_le_bytes());
-    let mut body: Vec<u8> = Vec::new();
-    let mut sizes = vec![SectionSize::default(); sections.len()];
-    let (last, first): (Vec<_>, Vec<_>) =
-        sections.iter().enumerate().partition(|(_, (kind, _))| kind.is_sv());
-    let start = HEADER_BYTES + sections.len() * ENTRY_BYTES + 4;
-    for (place, (kind, content)) in first.into_iter().chain(last) {
-        let section = kind.name();
-        let compressed;
-        let (compression, stored, raw_length, checksum) = match content {
-            Content::Stored(stored) => {
-                (stored.compression, stored.bytes, stored.raw_length as usize, stored.checksum)
-            }
-            Content::Packed(raw) => {
-                check_size(id, section, raw)?;
-                (STORED, raw.as_ref(), raw.len(), crc32fast::hash(raw))
-            }
-            Content::Raw(raw) => {
-                check_size(id, section, raw)?;
-                compressed = zstd::bulk::compress(raw, COMPRESSION_LEVEL).map_err(|error| {
-                    EncodeError::Compress { tile: id, section, reason: error.to_string() }
-                })?;
-                let (compression, stored) =
-                    if compressed.len() < raw.len() { (ZSTD, &compressed) } else { (STORED, raw) };
-                (compression, stored.as_slice(), raw.len(), crc32fast::hash(stored))
-            }
-        };
-        table.extend((*kind as u16).to_le_bytes());
-        table.extend([compression, 0]);
-        for number in [start + body.len(), stored.len(), raw_length] {
-            table.extend((number as u32).to_le_bytes());
-        }
-        table.extend(checksum.to_le_bytes());
-        body.extend(stored);
-        sizes[place] = SectionSize { raw: raw_length as u64, stored: stored.len() as u64 };
-    }
-    table.extend(crc32fast::hash(&table).to_le_bytes());
-    table.extend(body);
-    Ok((table, sizes))
-}
-
-/// How many bytes `raw` takes as the content of a section. For measurements.
-#[cfg(feature = "write")]
-pub(crate) fn compressed_size(raw: &[u8]) -> usize {
-    let compressed = zstd::bulk::compress(raw, COMPRESSION_LEVEL);
-    compressed.map_or(raw.len(), |compressed| compressed.len().min(raw.len()))
-}
-
-/// Fails if readers would refuse a section for its size.
-#[cfg(feature = "write")]
-fn check_size(
-    tile: TileId,
-    section: &'static str,
-    raw: &[u8],
-) -> Result<(), crate::payload::damage::EncodeError> {
-    if raw.len() > MAX_SECTION_BYTES {
-        let (bytes, limit) = (raw.len(), MAX_SECTION_BYTES);
-        return Err(crate::payload::damage::EncodeError::TooLarge { tile, section, bytes, limit });
-    }
-    Ok(())
 }

@@ -14,7 +14,7 @@ use crate::payload::number_codes::{Cursor, Planes};
 use crate::payload::section_kind::Kind;
 
 #[cfg(feature = "write")]
-pub use encode::{LinesSection, encode_lines, with_lines};
+pub use encode::encode_lines;
 
 /// A part of a way of a layer of lines near a tile: segments that follow each other, of which each comes into the tile or its level's margin around it. They
 /// are not cut there.

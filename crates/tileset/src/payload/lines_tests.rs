@@ -4,6 +4,7 @@ use corniche_areas::BoundaryClass;
 use proptest::prelude::*;
 
 use super::*;
+use crate::payload::builder::Section;
 
 const LAYER: ClassedLayer = ClassedLayer::Boundaries;
 
@@ -24,7 +25,7 @@ fn what_is_encoded_comes_back() {
         boundary(i64::MIN, BoundaryClass::Protected, &[(64, 64), (0, 64), (64, 64)]),
     ];
     let section = encode_lines(tile(), LAYER, 64, &boundaries).unwrap().unwrap();
-    assert_eq!(section.decode(tile()).unwrap(), boundaries);
+    assert_eq!(section.lines(LAYER, tile()).unwrap(), boundaries);
     assert_eq!(encode_lines(tile(), LAYER, 64, &[]).unwrap(), None);
 }
 
@@ -59,7 +60,7 @@ proptest! {
             .filter(|boundary| boundary.points.len() >= 2)
             .collect();
         if let Some(section) = encode_lines(tile(), LAYER, step, &boundaries).unwrap() {
-            prop_assert_eq!(section.decode(tile()).unwrap(), boundaries);
+            prop_assert_eq!(section.lines(LAYER, tile()).unwrap(), boundaries);
         }
     }
 
@@ -76,7 +77,7 @@ proptest! {
             *byte = value;
         }
         bytes.truncate(bytes.len().saturating_sub(cut / 10));
-        if let Ok(read) = LinesSection::from_bytes(LAYER, bytes).decode(tile()) {
+        if let Ok(read) = Section::of_lines(LAYER, bytes).lines(LAYER, tile()) {
             for boundary in read {
                 prop_assert!(boundary.points.len() >= 2);
             }

@@ -14,7 +14,7 @@ use crate::payload::envelope;
 use crate::payload::section_kind::Kind;
 
 #[cfg(feature = "write")]
-pub use encode::{PhotoSection, encode_photo, photo_section, with_photo};
+pub use encode::{encode_photo, photo_section};
 pub use image::{PHOTO_BORDER, Photo};
 
 /// Reads the photo of a tile from the bytes of its payload; `None` if it has none. Memory and work are bounded by

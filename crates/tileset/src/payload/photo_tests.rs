@@ -3,8 +3,8 @@
 use super::image::side;
 use super::*;
 use crate::limits::MAX_PHOTO_LEVELS;
+use crate::payload::builder::{self, PayloadBuilder, Section};
 use crate::payload::damage::Damage;
-use crate::payload::envelope::Content;
 use crate::payload::section_kind::Sections;
 
 fn id() -> TileId {
@@ -29,10 +29,10 @@ fn photo(levels: u8, is_none: impl Fn(usize, usize) -> bool) -> Photo {
 
 /// A payload of one section.
 fn payload(section: &[u8]) -> Vec<u8> {
-    envelope::seal(id(), &[(Kind::Photo, Content::Packed(section.into()))]).unwrap().0
+    builder::payload_of(id(), [(Kind::Photo, section.into())])
 }
 
-fn section_of(photo: &Photo, quality: u8) -> PhotoSection {
+fn section_of(photo: &Photo, quality: u8) -> Section {
     encode_photo(id(), photo, quality).unwrap().unwrap()
 }
 
@@ -86,15 +86,17 @@ fn no_texel_no_section() {
 
 #[test]
 fn a_payload_keeps_its_other_sections_and_takes_one_photo() {
-    let roads = envelope::seal(id(), &[(Kind::RoadsSv, Content::Raw(vec![7; 100]))]).unwrap().0;
+    let roads = builder::payload_of(id(), [(Kind::RoadsSv, vec![7; 100])]);
     let section = section_of(&photo(0, |_, _| false), 80);
-    let both = with_photo(&roads, id(), &section).unwrap();
+    let mut builder = PayloadBuilder::with_all_of(&roads, id()).unwrap();
+    builder.add(section.clone()).unwrap();
+    let both = builder.seal().unwrap().bytes;
     assert_eq!(photo_section(&both, id()).unwrap(), Some(section.clone()));
     assert_eq!(photo_section(&roads, id()).unwrap(), None);
     let sections = envelope::open(&both, id()).unwrap();
     assert_eq!(envelope::section(&sections, Kind::RoadsSv).unwrap(), Some(vec![7; 100]));
-    assert!(with_photo(&both, id(), &section).is_err());
-    assert!(with_photo(&both[1..], id(), &section).is_err());
+    assert!(PayloadBuilder::with_all_of(&both, id()).unwrap().add(section).is_err());
+    assert!(PayloadBuilder::with_all_of(&both[1..], id()).is_err());
 }
 
 #[test]

@@ -51,6 +51,12 @@ impl Kind {
         matches!(self, Self::RoadsSv | Self::CodedSv)
     }
 
+    /// Whether its bytes do not become smaller by compression.
+    #[cfg(feature = "write")]
+    pub(crate) const fn is_dense(self) -> bool {
+        matches!(self, Self::Terrain | Self::CodedGeo | Self::CodedSv | Self::Photo)
+    }
+
     /// The kind of the sections of a layer of lines.
     pub(crate) const fn of_lines(layer: ClassedLayer) -> Self {
         match layer {

@@ -7,7 +7,7 @@ use corniche_roads::FunctionalRoadClass;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope::SectionSize;
 use crate::payload::number_codes::Cursor;
-use crate::payload::section_kind::{GEO, Kind, SV, TwoKinds};
+use crate::payload::section_kind::{AREAS, GEO, Kind, SV, TwoKinds};
 use crate::payload::source_grid::GRID_BYTES;
 use crate::payload::{class_table, envelope};
 
@@ -42,6 +42,32 @@ pub struct PayloadSizes {
     pub sv_class_bytes: [u64; FunctionalRoadClass::COUNT],
 }
 
+impl PayloadSizes {
+    /// The sizes of sections of which `size` knows the kinds that are there, with the bytes of the classes of GEO and SV roads.
+    pub(crate) fn of(
+        size: impl Fn(Kind) -> SectionSize,
+        sv_tail: u64,
+        [geo_class_bytes, sv_class_bytes]: [[u64; FunctionalRoadClass::COUNT]; 2],
+    ) -> Self {
+        let either = |kinds: TwoKinds| size(kinds.planes).or(size(kinds.coded));
+        Self {
+            terrain: size(Kind::Terrain),
+            roads_geo: either(GEO),
+            roads_sv: either(SV),
+            sv_tail,
+            attributes: size(Kind::Attributes),
+            road_tags: size(Kind::RoadTags),
+            relief: size(Kind::Relief),
+            photo: size(Kind::Photo),
+            areas: either(AREAS),
+            lines: ClassedLayer::ALL.map(|layer| size(Kind::of_lines(layer))),
+            spans: size(Kind::Spans),
+            geo_class_bytes,
+            sv_class_bytes,
+        }
+    }
+}
+
 /// Sizes of the parts of a payload of tile `id`.
 ///
 /// # Errors
@@ -62,19 +88,6 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
     };
     let of_classes = |roads: TwoKinds| class_bytes(roads).map_err(failed(roads.planes.name()));
     let size = |kind| envelope::size(&sections, kind);
-    Ok(PayloadSizes {
-        terrain: size(Kind::Terrain),
-        roads_geo: size(Kind::RoadsGeo).or(size(Kind::CodedGeo)),
-        roads_sv: size(Kind::RoadsSv).or(size(Kind::CodedSv)),
-        sv_tail: envelope::sv_tail_bytes(&sections),
-        attributes: size(Kind::Attributes),
-        road_tags: size(Kind::RoadTags),
-        relief: size(Kind::Relief),
-        photo: size(Kind::Photo),
-        areas: size(Kind::Areas).or(size(Kind::CodedAreas)),
-        lines: ClassedLayer::ALL.map(|layer| size(Kind::of_lines(layer))),
-        spans: size(Kind::Spans),
-        geo_class_bytes: of_classes(GEO)?,
-        sv_class_bytes: of_classes(SV)?,
-    })
+    let class_bytes = [of_classes(GEO)?, of_classes(SV)?];
+    Ok(PayloadSizes::of(size, envelope::sv_tail_bytes(&sections), class_bytes))
 }

@@ -21,7 +21,7 @@ use crate::payload::section_kind::Kind;
 use crate::payload::terrain;
 
 #[cfg(feature = "write")]
-pub use encode::{SpansSection, encode_spans, with_spans};
+pub use encode::encode_spans;
 pub use span_run::{SpanHeight, SpanPoint, SpanRun};
 
 /// Bits of a run's first number.

@@ -7,7 +7,7 @@ use corniche_tin::{Placement, Surface};
 use proptest::prelude::*;
 
 use super::*;
-use crate::{SectionSize, Sections, payload_sizes};
+use crate::{EncodedTile, PayloadBuilder, Section, SectionSize, Sections, payload_sizes};
 
 fn tile() -> TileId {
     TileId::new(1, 1, 0).unwrap()
@@ -58,13 +58,17 @@ fn runs() -> Vec<SpanRun> {
     ]
 }
 
-fn section_of(runs: &[SpanRun]) -> SpansSection {
+fn section_of(runs: &[SpanRun]) -> Section {
     encode_spans(tile(), &frame(), runs).unwrap().unwrap()
 }
 
 /// The small package's tile with these spans.
-fn payload_with(section: SpansSection) -> (Vec<u8>, SectionSize) {
-    with_spans(&package::encoded(tile()), tile(), section).unwrap()
+fn payload_with(section: Section) -> (Vec<u8>, SectionSize) {
+    let payload = package::encoded(tile());
+    let mut builder = PayloadBuilder::with_all_of(&payload, tile()).unwrap();
+    builder.add(section).unwrap();
+    let EncodedTile { bytes, sizes } = builder.seal().unwrap();
+    (bytes, sizes.spans)
 }
 
 fn read(bytes: &[u8]) -> Result<Vec<SpanRun>, DecodeError> {
@@ -78,7 +82,7 @@ fn decode_all(bytes: &[u8]) -> Result<crate::TilePayload, DecodeError> {
 #[test]
 fn what_is_encoded_comes_back() {
     let section = section_of(&runs());
-    assert_eq!(section.decode(tile(), &frame()).unwrap(), runs());
+    assert_eq!(section.spans(tile(), &frame()).unwrap(), runs());
     assert_eq!(encode_spans(tile(), &frame(), &[]).unwrap(), None);
     let (bytes, size) = payload_with(section);
     assert_eq!(read(&bytes).unwrap(), runs());
@@ -142,10 +146,9 @@ fn what_cannot_be_read_is_not_written() {
     // A tile has spans once, and ground.
     let section = || section_of(&runs());
     let (bytes, _) = payload_with(section());
-    let again = with_spans(&bytes, tile(), section()).unwrap_err();
-    assert!(again.to_string().contains("beside other spans"), "{again}");
-    let empty = envelope::seal(tile(), &[]).unwrap().0;
-    let bare = with_spans(&empty, tile(), section()).unwrap_err();
+    let again = PayloadBuilder::with_all_of(&bytes, tile()).unwrap().add(section()).unwrap_err();
+    assert!(again.to_string().contains("beside others"), "{again}");
+    let bare = PayloadBuilder::new(tile()).add(section()).unwrap_err();
     assert!(bare.to_string().contains("without ground"), "{bare}");
 }
 
@@ -214,7 +217,7 @@ proptest! {
     #[test]
     fn spans_come_back(runs in any_runs()) {
         if let Some(section) = encode_spans(tile(), &frame(), &runs).unwrap() {
-            prop_assert_eq!(section.decode(tile(), &frame()).unwrap(), runs);
+            prop_assert_eq!(section.spans(tile(), &frame()).unwrap(), runs);
         }
     }
 
@@ -226,7 +229,7 @@ proptest! {
             *byte = value;
         }
         bytes.truncate(bytes.len().saturating_sub(cut / 10));
-        if let Ok(read) = SpansSection::from_bytes(bytes).decode(tile(), &frame()) {
+        if let Ok(read) = Section::of_spans(bytes).spans(tile(), &frame()) {
             prop_assert!(encode_spans(tile(), &frame(), &read).is_ok());
         }
     }

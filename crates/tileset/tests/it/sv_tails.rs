@@ -12,7 +12,6 @@ use corniche_tileset::{
     ByteSource, Damage, Manifest, MemorySource, Package, PayloadContext, Photo, RoadRecord,
     Sections, SourceError, SvRoad, SvTail, SvTails, Terrain, TilePayload, decode, decode_areas,
     decode_lines, decode_photo, decode_spans, encode, encode_photo, payload_sizes, terrain_summary,
-    with_photo,
 };
 use corniche_tin::{Tin, TinVertex};
 
@@ -79,7 +78,7 @@ fn with_a_photo(manifest: &Manifest, roads: u32) -> Vec<u8> {
     let mut photo = Photo { levels: 0, rgba: Vec::new() };
     photo.rgba = vec![200; photo.side() * photo.side() * 4];
     let photo = encode_photo(TileId::ROOT, &photo, 80).unwrap().unwrap();
-    with_photo(&encoded, TileId::ROOT, &photo).unwrap()
+    package::with_section(&encoded, TileId::ROOT, photo)
 }
 
 #[test]

@@ -111,28 +111,19 @@ pub(crate) fn list(costs: &Costs, slots: u32, least_us: u64) -> Vec<Job> {
     let before_tiles = after(&[Step::Roads, Step::Top], &jobs);
     jobs.extend(of_subtrees(Step::Tiles, &subtrees, start_us, &before_tiles));
     let merge_us = costs.merge_us + costs.tiles.above_us(&subtrees) + start_us;
-    jobs.push(Job {
-        id: MERGE.to_owned(),
-        step: MERGE,
-        subtree: None,
-        share: None,
-        work: seconds(merge_us),
-        after: after(&[Step::Hashes, Step::Tiles], &jobs),
-        args: Vec::new(),
-    });
+    let after_tiles = after(&[Step::Hashes, Step::Tiles], &jobs);
+    jobs.push(job(MERGE, merge_us, after_tiles, &[]));
     jobs
 }
 
+fn job(step: &'static str, cost_us: u64, after: Vec<&'static str>, args: &[&str]) -> Job {
+    let args = args.iter().map(|&arg| arg.to_owned()).collect();
+    let (id, work) = (step.to_owned(), seconds(cost_us));
+    Job { id, step, subtree: None, share: None, work, after, args }
+}
+
 fn whole(step: Step, cost_us: u64, after: Vec<&'static str>) -> Job {
-    Job {
-        id: step.name().to_owned(),
-        step: step.name(),
-        subtree: None,
-        share: None,
-        work: seconds(cost_us),
-        after,
-        args: ["--step", step.name()].map(str::to_owned).into(),
-    }
+    job(step.name(), cost_us, after, &["--step", step.name()])
 }
 
 fn of_share(step: Step, share: Share, work_us: u64, after: &[&'static str]) -> Job {

@@ -8,43 +8,30 @@ use super::coded_rings::RingCoder;
 use super::decode::{self, PlacesOfSection};
 use super::record::AreaRecord;
 use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS, MAX_TEXT_BYTES};
+use crate::payload::builder::{self, Section};
 use crate::payload::damage::{Damage, DecodeError, EncodeError};
-use crate::payload::envelope::{self, Content, SectionSize};
+use crate::payload::envelope;
 use crate::payload::number_codes::{Planes, put_planes};
 use crate::payload::range_coder::Writer;
 use crate::payload::section_kind::{AREAS, Kind};
 
-/// A tile's areas as the section of a payload.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct AreasSection {
-    /// Whether its points are range-coded bits.
-    is_coded: bool,
-    bytes: Vec<u8>,
-}
-
-impl AreasSection {
-    /// What [`AreasSection::from_bytes`] takes: which of the two kinds of section it is, then its bytes.
+impl Section {
+    /// The areas of a tile with these bytes, which [`Section::into_bytes`] gave.
     #[must_use]
-    pub fn into_bytes(self) -> Vec<u8> {
-        [vec![u8::from(self.is_coded)], self.bytes].concat()
+    pub fn of_areas(mut bytes: Vec<u8>) -> Self {
+        let is_coded = bytes.first() == Some(&1);
+        bytes.drain(..bytes.len().min(1));
+        Self { kind: if is_coded { AREAS.coded } else { AREAS.planes }, bytes }
     }
 
     /// The areas that it holds.
     ///
     /// # Errors
     /// When the bytes are damaged.
-    pub fn decode(&self, tile: TileId, frame: &GridFrame) -> Result<Vec<AreaRecord>, DecodeError> {
+    pub fn areas(&self, tile: TileId, frame: &GridFrame) -> Result<Vec<AreaRecord>, DecodeError> {
         let failed = |damage| DecodeError { tile, part: Kind::Areas.name(), damage };
         let bounds = frame.tile_lattice_bounds(tile);
-        decode::decode(&self.bytes, self.is_coded, bounds).map_err(failed)
-    }
-
-    /// The section with these bytes, which [`AreasSection::into_bytes`] gave.
-    #[must_use]
-    pub fn from_bytes(mut bytes: Vec<u8>) -> Self {
-        let is_coded = bytes.first() == Some(&1);
-        bytes.drain(..bytes.len().min(1));
-        Self { is_coded, bytes }
+        decode::decode(&self.bytes, self.kind == AREAS.coded, bounds).map_err(failed)
     }
 }
 
@@ -60,7 +47,7 @@ pub fn encode_areas(
     frame: &GridFrame,
     step: i64,
     areas: &[AreaRecord],
-) -> Result<Option<AreasSection>, EncodeError> {
+) -> Result<Option<Section>, EncodeError> {
     if areas.is_empty() {
         return Ok(None);
     }
@@ -72,7 +59,7 @@ pub fn encode_areas(
 
 /// The areas with their points in planes, as kind 8 has them.
 #[cfg(test)]
-pub(crate) fn in_planes(areas: &[AreaRecord], bounds: LatticeBounds, step: i64) -> AreasSection {
+pub(crate) fn in_planes(areas: &[AreaRecord], bounds: LatticeBounds, step: i64) -> Section {
     section(areas, bounds, step, None)
 }
 
@@ -82,8 +69,8 @@ fn section(
     bounds: LatticeBounds,
     step: i64,
     coded: Option<Vec<u8>>,
-) -> AreasSection {
-    let is_coded = coded.is_some();
+) -> Section {
+    let kind = if coded.is_some() { AREAS.coded } else { AREAS.planes };
     let mut columns = Columns::default();
     for area in areas {
         columns.push_area(area);
@@ -104,7 +91,7 @@ fn section(
             put_planes(&mut bytes, column);
         }
     }
-    AreasSection { is_coded, bytes }
+    Section { kind, bytes }
 }
 
 /// All points as range-coded bits; `None` where one has no code: a step of 2^32 or more.
@@ -150,7 +137,7 @@ fn part_sizes(section: &[u8], is_coded: bool) -> Result<[usize; 5], Damage> {
         steps,
         beside,
     ];
-    Ok(parts.map(|part| envelope::compressed_size(&part)))
+    Ok(parts.map(|part| builder::compressed_size(&part)))
 }
 
 fn check(areas: &[AreaRecord], bounds: &LatticeBounds, step: i64) -> Result<(), &'static str> {
@@ -234,28 +221,4 @@ impl Columns {
         }
         columns
     }
-}
-
-const ALREADY: &str = "beside other areas";
-
-/// A payload with areas more; all its other sections stay as they are. Returns the size of the new section, too.
-///
-/// # Errors
-/// When the bytes are no payload of the tile, or it has areas already.
-pub fn with_areas(
-    payload: &[u8],
-    tile: TileId,
-    areas: AreasSection,
-) -> Result<(Vec<u8>, SectionSize), EncodeError> {
-    let [kind, other] =
-        if areas.is_coded { [AREAS.coded, AREAS.planes] } else { [AREAS.planes, AREAS.coded] };
-    let has_other = envelope::open(payload, tile)
-        .is_ok_and(|sections| envelope::find(&sections, other).is_some());
-    if has_other {
-        let section = Kind::Areas.name();
-        return Err(EncodeError::Unencodable { tile, section, what: ALREADY });
-    }
-    let section = (kind, Content::Raw(areas.bytes));
-    let (bytes, sizes) = envelope::with_section(payload, tile, section, ALREADY)?;
-    Ok((bytes, sizes.last().copied().unwrap_or_default()))
 }

@@ -2,9 +2,10 @@
 
 use corniche_areas::{AreaClass, AreaObject};
 use corniche_geom::LatticePoint;
+use serde::{Deserialize, Serialize};
 
 /// The part of an area that lies in a tile.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AreaRecord {
     /// The object of OSM.
     pub object: AreaObject,
@@ -18,7 +19,7 @@ pub struct AreaRecord {
 
 /// A polygon: an outer ring, counter-clockwise, then rings around its holes, clockwise. The first point of a ring is not repeated at its
 /// end. All points lie in the tile or on its border.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AreaRings {
     /// At least one ring, each of at least three points.
     pub rings: Vec<Vec<LatticePoint>>,

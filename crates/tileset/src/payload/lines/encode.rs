@@ -6,38 +6,25 @@ use corniche_varints::{push_varint, to_zigzag};
 
 use super::{FARTHEST, LineRecord, MOST_STEP, decode};
 use crate::limits::{MAX_CLASSED_LINES, MAX_POINTS};
+use crate::payload::builder::Section;
 use crate::payload::damage::{DecodeError, EncodeError};
-use crate::payload::envelope::{self, Content, SectionSize};
 use crate::payload::number_codes::put_planes;
 use crate::payload::section_kind::Kind;
 
-/// A tile's lines of a layer as the section of a payload.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LinesSection {
-    layer: ClassedLayer,
-    bytes: Vec<u8>,
-}
-
-impl LinesSection {
-    /// Its bytes.
+impl Section {
+    /// The lines of a layer with these bytes, which [`Section::into_bytes`] gave.
     #[must_use]
-    pub fn into_bytes(self) -> Vec<u8> {
-        self.bytes
+    pub fn of_lines(layer: ClassedLayer, bytes: Vec<u8>) -> Self {
+        Self { kind: Kind::of_lines(layer), bytes }
     }
 
-    /// The lines that it holds.
+    /// The lines of a layer that it holds.
     ///
     /// # Errors
     /// When the bytes are damaged.
-    pub fn decode(&self, tile: TileId) -> Result<Vec<LineRecord>, DecodeError> {
-        let part = Kind::of_lines(self.layer).name();
-        decode(&self.bytes, self.layer).map_err(|damage| DecodeError { tile, part, damage })
-    }
-
-    /// The section of a layer with these bytes, which [`LinesSection::into_bytes`] gave.
-    #[must_use]
-    pub fn from_bytes(layer: ClassedLayer, bytes: Vec<u8>) -> Self {
-        Self { layer, bytes }
+    pub fn lines(&self, layer: ClassedLayer, tile: TileId) -> Result<Vec<LineRecord>, DecodeError> {
+        let part = self.kind.name();
+        decode(&self.bytes, layer).map_err(|damage| DecodeError { tile, part, damage })
     }
 }
 
@@ -52,7 +39,7 @@ pub fn encode_lines(
     layer: ClassedLayer,
     step: i64,
     lines: &[LineRecord],
-) -> Result<Option<LinesSection>, EncodeError> {
+) -> Result<Option<Section>, EncodeError> {
     if lines.is_empty() {
         return Ok(None);
     }
@@ -82,7 +69,7 @@ pub fn encode_lines(
     for column in &columns {
         put_planes(&mut bytes, column);
     }
-    Ok(Some(LinesSection { layer, bytes }))
+    Ok(Some(Section::of_lines(layer, bytes)))
 }
 
 fn check(layer: ClassedLayer, lines: &[LineRecord], step: i64) -> Result<(), &'static str> {
@@ -104,19 +91,4 @@ fn check(layer: ClassedLayer, lines: &[LineRecord], step: i64) -> Result<(), &'s
         return Err(line_text!(layer, "more " many " than readers accept"));
     }
     Ok(())
-}
-
-/// A payload with the lines of a layer more; all its other sections stay as they are. Returns the size of the new section, too.
-///
-/// # Errors
-/// When the bytes are no payload of the tile, or it has lines of the layer already.
-pub fn with_lines(
-    payload: &[u8],
-    tile: TileId,
-    LinesSection { layer, bytes }: LinesSection,
-) -> Result<(Vec<u8>, SectionSize), EncodeError> {
-    let section = (Kind::of_lines(layer), Content::Raw(bytes));
-    let beside = line_text!(layer, "beside other " many);
-    let (bytes, sizes) = envelope::with_section(payload, tile, section, beside)?;
-    Ok((bytes, sizes.last().copied().unwrap_or_default()))
 }

@@ -9,39 +9,28 @@ use super::{
     image::Photo,
 };
 use crate::limits::MAX_PHOTO_LEVELS;
+use crate::payload::builder::Section;
 use crate::payload::damage::{DecodeError, EncodeError};
-use crate::payload::envelope::{self, Content};
+use crate::payload::envelope;
 use crate::payload::section_kind::Kind;
 
 /// Texels along a side of JPEG's blocks.
 const BLOCK: usize = 8;
 
-/// A tile's photo as the section of a payload.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PhotoSection {
-    pub(crate) bytes: Vec<u8>,
-}
-
-impl PhotoSection {
-    /// Its bytes.
+impl Section {
+    /// The photo of a tile with these bytes, which [`Section::bytes`] gave.
     #[must_use]
-    pub fn bytes(&self) -> &[u8] {
-        &self.bytes
+    pub fn of_photo(bytes: Vec<u8>) -> Self {
+        Self { kind: Kind::Photo, bytes }
     }
 
-    /// What readers will see of it.
+    /// What readers will see of the photo that it holds.
     ///
     /// # Errors
     /// When the bytes are damaged.
-    pub fn decode(&self, tile: TileId) -> Result<Photo, DecodeError> {
+    pub fn photo(&self, tile: TileId) -> Result<Photo, DecodeError> {
         let part = Kind::Photo.name();
         decode::decode(&self.bytes).map_err(|damage| DecodeError { tile, part, damage })
-    }
-
-    /// The section with these bytes, which [`PhotoSection::bytes`] gave.
-    #[must_use]
-    pub fn from_bytes(bytes: Vec<u8>) -> Self {
-        Self { bytes }
     }
 }
 
@@ -56,7 +45,7 @@ pub fn encode_photo(
     tile: TileId,
     photo: &Photo,
     quality: u8,
-) -> Result<Option<PhotoSection>, EncodeError> {
+) -> Result<Option<Section>, EncodeError> {
     let refused = |what| EncodeError::Unencodable { tile, section: Kind::Photo.name(), what };
     if photo.levels > MAX_PHOTO_LEVELS || photo.rgba.len() != photo.side() * photo.side() * 4 {
         return Err(refused("a photo of another size"));
@@ -82,7 +71,7 @@ pub fn encode_photo(
         section: Kind::Photo.name(),
         reason: error.to_string(),
     })?;
-    Ok(Some(PhotoSection { bytes }))
+    Ok(Some(Section::of_photo(bytes)))
 }
 
 /// The colours of all texels. Those without a photo get the mean of the block of JPEG that they are in, or of the whole photo where
@@ -124,26 +113,13 @@ fn mean<'a>(texels: impl Iterator<Item = &'a [u8]>) -> Option<[u8; 3]> {
     (count > 0).then(|| sums.map(|sum| ((sum + count / 2) / count) as u8))
 }
 
-/// A payload with a photo more; all its other sections stay as they are.
-///
-/// # Errors
-/// When the bytes are no payload of the tile, or it has a photo already.
-pub fn with_photo(
-    payload: &[u8],
-    tile: TileId,
-    photo: &PhotoSection,
-) -> Result<Vec<u8>, EncodeError> {
-    let section = (Kind::Photo, Content::Packed((&photo.bytes).into()));
-    Ok(envelope::with_section(payload, tile, section, "beside another photo")?.0)
-}
-
 /// The photo of a payload as it is stored there; `None` if it has none.
 ///
 /// # Errors
 /// When the bytes are not a payload of the tile, or the section is damaged.
-pub fn photo_section(payload: &[u8], tile: TileId) -> Result<Option<PhotoSection>, DecodeError> {
+pub fn photo_section(payload: &[u8], tile: TileId) -> Result<Option<Section>, DecodeError> {
     let failed = |part| move |damage| DecodeError { tile, part, damage };
     let sections = envelope::open(payload, tile).map_err(failed("header"))?;
     let bytes = envelope::section(&sections, Kind::Photo).map_err(failed(Kind::Photo.name()))?;
-    Ok(bytes.map(|bytes| PhotoSection { bytes }))
+    Ok(bytes.map(Section::of_photo))
 }

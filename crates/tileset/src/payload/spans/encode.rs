@@ -9,38 +9,26 @@ use super::{
     is_height,
 };
 use crate::limits::{MAX_LINES, MAX_SPAN_POINTS, MAX_TRIANGLES};
+use crate::payload::builder::Section;
 use crate::payload::damage::{DecodeError, EncodeError};
-use crate::payload::envelope::{self, Content, SectionSize};
 use crate::payload::number_codes::put_planes;
 use crate::payload::points::put_points;
 use crate::payload::section_kind::Kind;
 
-/// A tile's spans as the section of a payload.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SpansSection {
-    bytes: Vec<u8>,
-}
-
-impl SpansSection {
-    /// Its bytes.
+impl Section {
+    /// The bridges and tunnels of a tile with these bytes, which [`Section::into_bytes`] gave.
     #[must_use]
-    pub fn into_bytes(self) -> Vec<u8> {
-        self.bytes
+    pub fn of_spans(bytes: Vec<u8>) -> Self {
+        Self { kind: Kind::Spans, bytes }
     }
 
-    /// The runs that it holds. That their triangles exist is not checked: a section does not know the tile's ground.
+    /// The runs of bridges and tunnels that it holds. That their triangles exist is not checked: a section does not know the tile's ground.
     ///
     /// # Errors
     /// When the bytes are damaged.
-    pub fn decode(&self, tile: TileId, frame: &GridFrame) -> Result<Vec<SpanRun>, DecodeError> {
+    pub fn spans(&self, tile: TileId, frame: &GridFrame) -> Result<Vec<SpanRun>, DecodeError> {
         let failed = |damage| DecodeError { tile, part: Kind::Spans.name(), damage };
         decode(&self.bytes, corner(tile, frame), MAX_TRIANGLES).map_err(failed)
-    }
-
-    /// The section with these bytes, which [`SpansSection::into_bytes`] gave.
-    #[must_use]
-    pub fn from_bytes(bytes: Vec<u8>) -> Self {
-        Self { bytes }
     }
 }
 
@@ -60,14 +48,14 @@ pub fn encode_spans(
     tile: TileId,
     frame: &GridFrame,
     runs: &[SpanRun],
-) -> Result<Option<SpansSection>, EncodeError> {
+) -> Result<Option<Section>, EncodeError> {
     if runs.is_empty() {
         return Ok(None);
     }
     let refused = |what| EncodeError::Unencodable { tile, section: Kind::Spans.name(), what };
     check(runs).map_err(refused)?;
     let bytes = section_bytes(runs, corner(tile, frame)).map_err(refused)?;
-    Ok(Some(SpansSection { bytes }))
+    Ok(Some(Section::of_spans(bytes)))
 }
 
 fn section_bytes(runs: &[SpanRun], corner: LatticePoint) -> Result<Vec<u8>, &'static str> {
@@ -141,24 +129,4 @@ fn check(runs: &[SpanRun]) -> Result<(), &'static str> {
         return Err("more spans than readers accept");
     }
     Ok(())
-}
-
-/// A payload with spans more; all its other sections stay as they are. Returns the size of the new section, too.
-///
-/// # Errors
-/// When the bytes are no payload of the tile, or it has spans already, or no ground.
-pub fn with_spans(
-    payload: &[u8],
-    tile: TileId,
-    spans: SpansSection,
-) -> Result<(Vec<u8>, SectionSize), EncodeError> {
-    let has_ground = envelope::open(payload, tile)
-        .is_ok_and(|sections| envelope::find(&sections, Kind::Terrain).is_some());
-    let section = (Kind::Spans, Content::Raw(spans.bytes));
-    let (bytes, sizes) = envelope::with_section(payload, tile, section, "beside other spans")?;
-    if !has_ground {
-        let section = Kind::Spans.name();
-        return Err(EncodeError::Unencodable { tile, section, what: "without ground" });
-    }
-    Ok((bytes, sizes.last().copied().unwrap_or_default()))
 }
