@@ -12,6 +12,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("page");
     let mut table = String::from("&[\n");
     for (path, file) in page_files::page_files(&folder)? {
+        let file = file.to_str().ok_or("a path that is not UTF-8")?;
         writeln!(table, "    ({path:?}, include_bytes!({file:?}).as_slice()),")?;
     }
     table.push_str("]\n");
