@@ -71,7 +71,7 @@ pub(crate) fn number_nodes<'a>(
                 newest = Some(Newest::of(&way));
             }
             let facts = WayFacts::of_bytes(&way.facts).map_err(failed)?;
-            add_summary(summary, facts.counts.into());
+            add_summary(summary, facts.counts);
             facts.defects.into_iter().for_each(&mut *on_defect);
         }
         let kind = way.take_apart(&mut node_ids).map_err(failed)?;

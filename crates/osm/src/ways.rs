@@ -93,7 +93,7 @@ impl Ways {
         self.held_bytes += held_bytes;
         for mut road in roads {
             road.order = self.roads.len() as u64;
-            road.facts = WayFacts::of(summary.clone(), defects.clone()).to_bytes();
+            road.facts = WayFacts { counts: summary.clone(), defects: defects.clone() }.to_bytes();
             self.held_bytes += road.facts.len() as u64;
             self.roads.push(road);
         }

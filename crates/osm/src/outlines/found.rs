@@ -44,7 +44,7 @@ impl<'a> Outlines<'a> {
         let (shares, scratch) = (reading.shares(), reading.request.scratch);
         let mut facts: Box<[u8]> = Box::default();
         if reading.is_of_several() {
-            facts = WayFacts::of(ExtractSummary::default(), Vec::new()).to_bytes();
+            facts = WayFacts::default().to_bytes();
         }
         Self {
             wanted,

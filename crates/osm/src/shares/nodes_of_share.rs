@@ -28,7 +28,7 @@ use crate::{
 /// as many shares. If the places are there already, nothing is read. `on_progress` counts the file's bytes once.
 ///
 /// # Errors
-/// As [`read_roads`](crate::read_roads) for what is wrong in these blobs; [`ReadOsmError::Kept`], also if ways are not there.
+/// As [`read_extract`](crate::read_extract) for what is wrong in these blobs; [`ReadOsmError::Kept`], also if ways are not there.
 pub fn keep_nodes(
     request: &ReadRequest<'_>,
     share: Share,

@@ -29,10 +29,10 @@ use crate::{
 };
 
 /// Hands out the roads of an extract whose ways and nodes were kept in so many shares: the same roads, defects and counts, in the same
-/// order, as [`read_roads`](crate::read_roads) does. The extract itself is not read, `request.path` only names it in messages.
+/// order, as [`read_extract`](crate::read_extract) does. The extract itself is not read, `request.path` only names it in messages.
 ///
 /// # Errors
-/// [`ReadOsmError::Kept`] if not all is there, and what [`read_roads`](crate::read_roads) finds by comparing ways with each other.
+/// [`ReadOsmError::Kept`] if not all is there, and what [`read_extract`](crate::read_extract) finds by comparing ways with each other.
 pub fn read_kept_roads(
     request: &ReadRequest<'_>,
     of: u16,
@@ -76,7 +76,7 @@ pub fn read_kept_roads(
         for defect in BlockReader::new(kept, kind, share, record.defect_blocks) {
             defects.push(&defect.map_err(|error| reading.scratch_failed(error))?);
         }
-        add_summary(&mut summary, record.counts.into());
+        add_summary(&mut summary, record.counts);
     }
     reading.tell(Step::Ways, 1, 1);
     let with_blocks = || shares.iter().copied().zip(&blocks);

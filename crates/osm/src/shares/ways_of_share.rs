@@ -18,7 +18,7 @@ use crate::{
 /// The file is not read for the list of its blobs: their frames are sought one after the other.
 ///
 /// # Errors
-/// As [`read_roads`](crate::read_roads) for what is wrong in these blobs, and [`ReadOsmError::Kept`].
+/// As [`read_extract`](crate::read_extract) for what is wrong in these blobs, and [`ReadOsmError::Kept`].
 pub fn keep_ways(
     request: &ReadRequest<'_>,
     share: Share,
@@ -73,7 +73,7 @@ pub fn keep_ways(
         blocks.push(&located.map_err(failed)?).map_err(kept_failed)?;
     }
     let record = WaysRecord {
-        counts: summary.into(),
+        counts: summary,
         header: file.take_header(),
         blobs_passed_over: file.blobs_passed_over(),
         len_bytes,
