@@ -239,11 +239,6 @@ impl<R: Read + Seek> BlobFile<R> {
         self.data.get(number).map_or(0, |part| part.blob_bytes)
     }
 
-    /// Size of the data blobs with these numbers, packed.
-    pub(crate) fn bytes_of(&self, numbers: &[usize]) -> u64 {
-        numbers.iter().map(|&number| self.data[number].blob_bytes).sum()
-    }
-
     /// Unpacks and checks the data blobs with these numbers in parallel and hands on what `scan` makes of each block, in their
     /// order. `scan` is told how many bytes it may find, and fails beyond.
     ///

@@ -7,7 +7,6 @@ use corniche_store::Sorter;
 
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
-    blobs::Decoding,
     block::Block,
     extracts::{Extracts, TOO_MUCH_FOUND},
     location::Location,
@@ -18,7 +17,7 @@ use crate::{
         wanted::Wanted,
     },
     reading::{Reading, Step},
-    records::{Located, WayRecord, age},
+    records::{Located, WayRecord},
     search::Search,
     ways::{Counted, Judge, Ways, add_summary},
 };
@@ -129,18 +128,14 @@ impl<'a> FoundWays<'a> {
         on_defect: &mut dyn FnMut(Defect),
     ) -> Result<(), ReadOsmError> {
         let [before, all_bytes] = wanted.bytes;
-        let decoding = Decoding {
-            pool: reading.request.pool,
-            should_stop: reading.should_stop,
-            on_bytes: &|bytes| reading.tell(Step::Ways, before + bytes, all_bytes),
-        };
+        let on_bytes = &|bytes| reading.tell(Step::Ways, before + bytes, all_bytes);
         let counted = if reading.is_of_several() { Counted::ByWay } else { Counted::ByBlock };
         let of_outlines: Vec<_> = outlines.iter().map(|outlines| outlines.wanted).collect();
         let scan = |block: Vec<u8>, most_bytes| {
             let how = (of_outlines.as_slice(), counted);
             Ok(OfBlock::scan(&block, wanted, how, most_bytes).ok_or(TOO_MUCH_FOUND)?)
         };
-        file.for_each_block(numbers, &decoding, scan, |place, of_block| {
+        file.for_each_block(reading, numbers, on_bytes, scan, |place, of_block| {
             let [file, _] = place;
             if let Some(looked) = of_block.looked {
                 self.looked_at.take(reading, place, looked)?;
@@ -171,10 +166,7 @@ impl<'a> FoundWays<'a> {
         of_block.defects.into_iter().for_each(&mut *on_defect);
         add_summary(&mut self.summary, of_block.summary);
         for mut way in of_block.roads {
-            way.order = self.roads_count;
-            way.file = file;
-            way.age = if reading.is_of_several() { age(way.version) } else { 0 };
-            self.roads_count += 1;
+            way.origin.place(reading, file, &mut self.roads_count);
             self.ways.push(way).map_err(|error| reading.scratch_failed(error))?;
         }
         self.take_located(reading, layer as u8, of_block.located)

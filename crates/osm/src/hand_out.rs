@@ -12,12 +12,12 @@ use crate::{
     deferred::Deferred,
     layer_sink::LayerSink,
     locate_nodes::LocatedNodes,
+    number_nodes::take_numbered,
     read_request::Placing,
     reading::Reading,
     records::Stop,
     spool::{SpoolReader, damaged},
     way_bytes::{take_node_ids, take_way},
-    wire::{varint, zigzag},
 };
 
 const WAYS_PER_TASK: usize = 256;
@@ -109,8 +109,9 @@ fn hand_out(
             before.drain(..).flatten().for_each(|assembled| take(assembled, sink));
             following
         });
-        let results: Result<Vec<_>, HandOutError> = assembled.into_iter().collect();
-        before = results.map_err(|error| error.of(reading))?;
+        let is_damaged = || Err(reading.scratch_failed(damaged()));
+        let results = assembled.into_iter().map(|some| some.unwrap_or_else(is_damaged));
+        before = results.collect::<Result<_, _>>()?;
         done += batch.ways.len() as u64;
         sink.reached(done, ways_count);
         batch = following?;
@@ -134,20 +135,6 @@ struct PackedWay {
     stops: Range<usize>,
 }
 
-enum HandOutError {
-    Damaged,
-    Osm(ReadOsmError),
-}
-
-impl HandOutError {
-    fn of(self, reading: &Reading<'_>) -> ReadOsmError {
-        match self {
-            Self::Damaged => reading.scratch_failed(damaged()),
-            Self::Osm(error) => error,
-        }
-    }
-}
-
 impl Batch {
     fn read(
         reading: &Reading<'_>,
@@ -162,11 +149,7 @@ impl Batch {
         {
             let kinds = &mut batch.kinds;
             let way = ways.next(|bytes| {
-                let way_id = zigzag(varint(bytes).ok()?);
-                let nodes = varint(bytes).ok()?;
-                let length = varint(bytes).ok()?.try_into().ok()?;
-                let (kind, rest) = bytes.split_at_checked(length)?;
-                *bytes = rest;
+                let (way_id, nodes, kind) = take_numbered(bytes)?;
                 let first = kinds.len();
                 kinds.extend(kind);
                 Some((way_id, nodes, first..kinds.len()))
@@ -183,12 +166,13 @@ impl Batch {
         Ok(batch)
     }
 
+    /// `None` if what is kept of the ways is damaged.
     fn assemble(
         &self,
         some: &[PackedWay],
         with_ids: bool,
         placing: Placing<'_>,
-    ) -> Result<Vec<Assembled>, HandOutError> {
+    ) -> Option<Result<Vec<Assembled>, ReadOsmError>> {
         let plain = |way: &PackedWay| {
             let mut bytes = &self.kinds[way.kind.clone()];
             let mut node_ids = Vec::new();
@@ -202,8 +186,7 @@ impl Batch {
             let kind = take_way(&mut bytes)?;
             Some(PlainWay { way_id: way.way_id, kind, node_ids, stops: way.stops.clone() })
         };
-        let ways: Option<Vec<PlainWay>> = some.iter().map(plain).collect();
-        assemble(ways.ok_or(HandOutError::Damaged)?, &self.stops, placing)
-            .map_err(HandOutError::Osm)
+        let ways = some.iter().map(plain).collect::<Option<_>>()?;
+        Some(assemble(ways, &self.stops, placing))
     }
 }

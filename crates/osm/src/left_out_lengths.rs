@@ -17,7 +17,7 @@ use crate::{
     records::SoughtId,
     spool::{Spool, damaged},
     way_bytes::{LeftOutWay, take_left_out, take_node_ids},
-    wire::{push_varint, varint},
+    wire::{push_bytes, take_bytes},
 };
 
 /// How many ways there are and how long they are, by reason and `highway` value.
@@ -26,7 +26,7 @@ pub(crate) type Lengths = BTreeMap<(LeftOutReason, String), LeftOutWays>;
 /// Ways that are left out, and the nodes that they name.
 pub(crate) struct LeftOutNodes<'a> {
     /// The length of a way's bytes, and these; see [`crate::way_bytes`].
-    ways: Spool<'a>,
+    pub(crate) ways: Spool<'a>,
     pub(crate) ids: Sorter<'a, SoughtId>,
     pub(crate) ids_count: u64,
 }
@@ -47,15 +47,7 @@ impl<'a> LeftOutNodes<'a> {
                 self.ids_count += 1;
             }
         }
-        self.ways.push(|bytes| {
-            push_varint(bytes, way.len() as u64);
-            bytes.extend(way);
-        })
-    }
-
-    /// The ways, and the ids of their nodes.
-    pub(crate) fn into_parts(self) -> (Spool<'a>, Sorter<'a, SoughtId>, u64) {
-        (self.ways, self.ids, self.ids_count)
+        self.ways.push(|bytes| push_bytes(bytes, way))
     }
 }
 
@@ -79,11 +71,9 @@ pub(crate) fn left_out_lengths(
         own.clear();
         while bytes.len() < BATCH_BYTES {
             let take = |page: &mut &[u8]| {
-                let length = varint(page).ok()?.try_into().ok()?;
-                let (way, rest) = page.split_at_checked(length)?;
-                *page = rest;
-                bytes.extend(way);
-                Some(bytes.len() - length..bytes.len())
+                let first = bytes.len();
+                bytes.extend(take_bytes(page)?);
+                Some(first..bytes.len())
             };
             let Some(way) = ways.next(take).map_err(failed)? else { break };
             own.push(way);

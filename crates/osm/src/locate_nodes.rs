@@ -11,7 +11,6 @@ use corniche_store::{Sorted, Sorter};
 use crate::{
     Defect, ReadOsmError,
     ahead::Ahead,
-    blobs::Decoding,
     block::Block,
     extracts::{Extracts, TOO_MUCH_FOUND},
     id_range::IdRange,
@@ -110,10 +109,10 @@ pub(crate) fn locate_nodes<'a>(
     for NodeQuestions { mentions, mentions_count, left_out: apart } in questions {
         let (mut ways, mut also) = (None, None);
         if let Some(apart) = apart {
-            let (own, ids, count) = apart.into_parts();
+            let LeftOutNodes { ways: own, ids, ids_count } = apart;
             ways = Some(own);
             also = Some(Ahead::new(ids.finish().map_err(|error| reading.scratch_failed(error))?));
-            all += count;
+            all += ids_count;
         }
         all += mentions_count;
         left_out.push(ways);
@@ -200,11 +199,6 @@ pub(crate) fn read_places<R: Read + Seek>(
     let numbers: Vec<usize> =
         node_blobs.iter().filter(|blob| blob.ids.meets(own)).map(|blob| blob.number).collect();
     let all_bytes = file.bytes_of(&numbers);
-    let decoding = Decoding {
-        pool: reading.request.pool,
-        should_stop: reading.should_stop,
-        on_bytes: &|bytes| on_bytes(bytes, all_bytes),
-    };
     let take = |_, found: Vec<FoundNode>| {
         found.into_iter().for_each(&mut *take);
         Ok(())
@@ -212,7 +206,7 @@ pub(crate) fn read_places<R: Read + Seek>(
     let scan = |block: Vec<u8>, most_bytes| {
         Ok(ids.scan(&Block::new(&block), most_bytes).ok_or(TOO_MUCH_FOUND)?)
     };
-    file.for_each_block(&numbers, &decoding, scan, take)?;
+    file.for_each_block(reading, &numbers, &|bytes| on_bytes(bytes, all_bytes), scan, take)?;
     Ok(all_bytes)
 }
 

@@ -14,7 +14,7 @@ use crate::{
     way_bytes::{is_carrier, is_left_out, take_node_ids},
     way_facts::WayFacts,
     ways::add_summary,
-    wire::{push_varint, to_zigzag},
+    wire::{push_bytes, push_signed, push_varint, take_bytes, take_number, take_signed},
 };
 
 /// What is left of the ways, and the nodes that they name.
@@ -90,14 +90,17 @@ pub(crate) fn number_nodes<'a>(
             .map_err(failed)?;
             continue;
         }
-        let version = known_version(way.version);
+        let version = known_version(way.origin.version);
         match &mut last {
             Some((way_id, first)) if *way_id == way.way_id => {
                 if let (Some(first), Some(second)) = (*first, version)
                     && first != second
                 {
                     let reason = two_versions("way", way.way_id, [first, second]);
-                    return Err(ReadOsmError::History { path: request.extract(way.file), reason });
+                    return Err(ReadOsmError::History {
+                        path: request.extract(way.origin.file),
+                        reason,
+                    });
                 }
                 *first = first.or(version);
                 numbered.duplicates += 1;
@@ -120,17 +123,16 @@ struct Newest {
 
 impl Newest {
     fn of(way: &WayRecord) -> Self {
-        let &WayRecord { way_id, age, order, version, file, .. } = way;
-        let bytes = way.bytes.clone();
-        let way = WayRecord { way_id, age, order, version, file, bytes, facts: Box::default() };
+        let &WayRecord { way_id, origin, ref bytes, .. } = way;
+        let way = WayRecord { way_id, origin, bytes: bytes.clone(), facts: Box::default() };
         Self { way, is_told: false }
     }
 
     /// Whether another record of the way is that of another extract, and so does not count. Tells once if it differs.
     fn is_instead_of(&mut self, other: &WayRecord, on_defect: &mut dyn FnMut(Defect)) -> bool {
         let Self { way, is_told } = self;
-        let is_of_other = other.file != way.file;
-        let differs = (other.version, &other.bytes) != (way.version, &way.bytes);
+        let is_of_other = other.origin.file != way.origin.file;
+        let differs = (other.origin.version, &other.bytes) != (way.origin.version, &way.bytes);
         if is_of_other && differs && !*is_told {
             *is_told = true;
             on_defect(Defect::ConflictingWay { way_id: way.way_id });
@@ -164,10 +166,14 @@ impl NumberedNodes<'_> {
         }
         *ways_count += 1;
         ways.push(|bytes| {
-            push_varint(bytes, to_zigzag(way_id));
+            push_signed(bytes, way_id);
             push_varint(bytes, node_ids.len() as u64);
-            push_varint(bytes, kept.len() as u64);
-            bytes.extend(kept);
+            push_bytes(bytes, kept);
         })
     }
+}
+
+/// Takes a way of [`NumberedNodes`]: its id, how many nodes it has, and what stays of its bytes.
+pub(crate) fn take_numbered<'b>(bytes: &mut &'b [u8]) -> Option<(i64, usize, &'b [u8])> {
+    Some((take_signed(bytes)?, take_number(bytes)?, take_bytes(bytes)?))
 }

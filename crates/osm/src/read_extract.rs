@@ -215,7 +215,6 @@ impl<'a> Found<'a> {
             return Ok(None);
         };
         let FoundWays { ways, located, mut summary, looked_at, nodes_named, .. } = found;
-        let looked_nodes = looked_at.nodes_seen;
 
         let (mut numbered, mut questions) = (Vec::new(), Vec::new());
         let mut objects = Vec::new();
@@ -242,14 +241,7 @@ impl<'a> Found<'a> {
             questions.push(NodeQuestions { mentions, mentions_count, left_out });
             layers.push((ways.read(), ways_count, duplicates));
         }
-        let mut nodes = NodesLast {
-            file,
-            unread: order.nodes,
-            node_blobs: looked_at.node_blobs,
-            versions: looked_at.versions,
-            nodes_seen: 0,
-            is_out_of_order: false,
-        };
+        let mut nodes = NodesLast { file, unread: order.nodes, looked_at, is_out_of_order: false };
         let located = located.finish().map_err(failed)?;
         let answers =
             locate_nodes(reading, &mut nodes, questions, located, &mut |layer, defect| {
@@ -258,13 +250,13 @@ impl<'a> Found<'a> {
         if nodes.is_out_of_order {
             return Ok(None);
         }
-        let nodes_seen = looked_nodes + nodes.nodes_seen;
+        let nodes_seen = nodes.looked_at.nodes_seen;
         let mut layers = layers.into_iter().zip(answers?);
         let mut found = Self { outlines: Vec::new(), roads: None };
         for own in objects {
             let Some(((ways, count, _), nodes)) = layers.next() else { break };
             let stops = nodes.stops.finish().map_err(failed)?;
-            found.outlines.push((own, LocatedWays { ways, stops, count }));
+            found.outlines.push((own, LocatedWays { ways, stops, count, last: None }));
         }
         if let Some((ways, nodes)) = layers.next() {
             summary.nodes_seen = nodes_seen;

@@ -39,7 +39,6 @@ pub(crate) fn make_lines(
 ) -> Result<(), ReadOsmError> {
     let records = Ahead::new(iter::from_fn(|| members.next(MemberRecord::decode).transpose()));
     let mut members = Members { records, objects: Vec::new() };
-    let mut way: Option<LocatedWay> = None;
     let (mut count, all) = (0, located.count);
     while let Some((way_id, class)) = members.next_way(reading, classes)? {
         reading.check_stop_at(count)?;
@@ -50,20 +49,14 @@ pub(crate) fn make_lines(
         count += 1;
         let Some(class) = layer.class(class) else { continue };
         summary.ways += 1;
-        while way.as_ref().is_none_or(|way| way.way_id < way_id) {
-            way = located.next(reading)?;
-            if way.is_none() {
-                break;
-            }
-        }
-        let made = match &way {
-            Some(way) if way.way_id == way_id => parts_of(reading, way, class).inspect(|_| {
+        let made = match located.find(reading, way_id)? {
+            Some(way) => parts_of(reading, way, class).inspect(|_| {
                 tell_gaps(way, on_defect);
                 if let Some(names) = &mut names {
                     names.tell(layer, way, &members.objects);
                 }
             }),
-            _ => Err(LineLoss::MissingWay),
+            None => Err(LineLoss::MissingWay),
         };
         match made {
             Ok(parts) => {

@@ -15,7 +15,7 @@ use crate::{
     looked::check_held,
     number_nodes::{NumberedNodes, number_nodes},
     reading::Reading,
-    records::{SoughtId, WayRecord, age},
+    records::{SoughtId, WayRecord},
     sought_ids::SoughtIds,
     spool::{Spool, SpoolReader},
     way_facts::WayFacts,
@@ -69,7 +69,6 @@ impl<'a> Outlines<'a> {
         is_before_ways: bool,
     ) -> Result<(), ReadOsmError> {
         let failed = |error| reading.scratch_failed(error);
-        let age = |version| if reading.is_of_several() { age(version) } else { 0 };
         self.held_bytes += of_block.held_bytes;
         check_held(reading, self.held_bytes)?;
         for id in of_block.open_ways {
@@ -78,10 +77,7 @@ impl<'a> Outlines<'a> {
             self.defects.push(&Defect::LostArea { is_relation, id, loss });
         }
         for mut object in of_block.objects {
-            object.order = self.objects_count;
-            self.objects_count += 1;
-            object.file = file;
-            object.age = age(object.version);
+            object.origin.place(reading, file, &mut self.objects_count);
             if is_before_ways {
                 for way in &object.ways {
                     self.way_ids.push(SoughtId(way.way_id)).map_err(failed)?;
@@ -90,10 +86,7 @@ impl<'a> Outlines<'a> {
             self.objects.push(object).map_err(failed)?;
         }
         for mut way in of_block.ways {
-            way.order = self.ways_count;
-            self.ways_count += 1;
-            way.file = file;
-            way.age = age(way.version);
+            way.origin.place(reading, file, &mut self.ways_count);
             way.facts.clone_from(&self.facts);
             self.ways.push(way).map_err(failed)?;
         }

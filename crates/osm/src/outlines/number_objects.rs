@@ -41,11 +41,11 @@ pub(crate) fn number_objects<'a>(
     for (count, object) in (0..).zip(objects.finish().map_err(failed)?) {
         reading.check_stop_at(count)?;
         let object = object.map_err(failed)?;
-        let version = known_version(object.version);
+        let version = known_version(object.origin.version);
         if let Some((before, file, first)) = last
             && before == object.object
         {
-            if file != object.file {
+            if file != object.origin.file {
                 // That of another extract, which is older or the same.
                 continue;
             }
@@ -61,7 +61,7 @@ pub(crate) fn number_objects<'a>(
             on_defect(Defect::LostArea { is_relation, id, loss });
             continue;
         }
-        last = Some((object.object, object.file, version));
+        last = Some((object.object, object.origin.file, version));
         let (known, ways) = object.into_known();
         numbered.known.push(|bytes| known.encode(bytes)).map_err(failed)?;
         for &member in &ways {
