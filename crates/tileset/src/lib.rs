@@ -58,9 +58,8 @@ pub use payload::{
 };
 #[cfg(feature = "write")]
 pub use payload::{
-    AreasSection, EncodedTile, LinesSection, PayloadContext, PhotoSection, SpansSection,
-    area_part_sizes, encode, encode_areas, encode_lines, encode_photo, encode_spans,
-    encode_with_ground_of, photo_section, terrain_part_sizes, with_areas, with_lines, with_photo,
-    with_spans,
+    AreasSection, EncodedTile, LinesSection, PayloadContext, PhotoSection, SpansSection, encode,
+    encode_areas, encode_lines, encode_photo, encode_spans, encode_with_ground_of, photo_section,
+    with_areas, with_lines, with_photo, with_spans,
 };
 pub use tile_order::{pmtiles_order, tile_of_order};

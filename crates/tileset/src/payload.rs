@@ -41,11 +41,11 @@ mod damage;
 
 pub use areas::{AreaRecord, AreaRings, decode_areas};
 #[cfg(feature = "write")]
-pub use areas::{AreasSection, area_part_sizes, encode_areas, with_areas};
+pub use areas::{AreasSection, encode_areas, with_areas};
 pub use damage::{Damage, DecodeError, EncodeError};
 pub use decode::decode;
 #[cfg(feature = "write")]
-pub use encode::{EncodedTile, PayloadContext, encode, encode_with_ground_of, terrain_part_sizes};
+pub use encode::{EncodedTile, PayloadContext, encode, encode_with_ground_of};
 pub use envelope::SectionSize;
 pub use lines::{LineRecord, decode_lines};
 #[cfg(feature = "write")]

@@ -352,13 +352,6 @@ pub(crate) fn seal(
     Ok((table, sizes))
 }
 
-/// How many bytes `raw` takes as the content of a section. For measurements.
-#[cfg(feature = "write")]
-pub(crate) fn compressed_size(raw: &[u8]) -> usize {
-    let compressed = zstd::bulk::compress(raw, COMPRESSION_LEVEL);
-    compressed.map_or(raw.len(), |compressed| compressed.len().min(raw.len()))
-}
-
 /// Fails if readers would refuse a section for its size.
 #[cfg(feature = "write")]
 fn check_size(

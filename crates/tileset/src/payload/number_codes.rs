@@ -36,12 +36,6 @@ impl<'a> Planes<'a> {
         })
     }
 
-    /// The bytes that stand for the numbers, without their number of planes.
-    #[cfg(feature = "write")]
-    pub(crate) fn bytes(self) -> &'a [u8] {
-        self.bytes
-    }
-
     /// Whether all numbers are 0 because no byte stands for any of them.
     pub(crate) fn is_absent(self) -> bool {
         self.bytes.is_empty()

@@ -91,11 +91,6 @@ impl Writer {
         Self { out, low: 0, range: u32::MAX, held: 0, after_held: 0, is_first: true }
     }
 
-    /// How many bytes are certain by now, those in front of the string included.
-    pub(crate) fn written(&self) -> usize {
-        self.out.len()
-    }
-
     /// All bytes.
     pub(crate) fn finish(mut self) -> Vec<u8> {
         for _ in 0..5 {
@@ -175,12 +170,6 @@ impl<'a> Reader<'a> {
             reader.widen();
         }
         reader
-    }
-
-    /// Bytes taken so far; some of them may belong to bits that were not asked for yet.
-    #[cfg(feature = "write")]
-    pub(crate) fn taken(&self) -> usize {
-        self.taken
     }
 
     /// Whether more was read than there is. A string that was written whole is never read beyond its end.

@@ -12,21 +12,21 @@ use crate::payload::number_codes::{Cursor, Planes};
 use crate::payload::range_coder::Reader;
 
 /// The columns of numbers that a section is made of, and its points.
-pub(crate) struct Columns<'a> {
+struct Columns<'a> {
     step: i64,
     count: usize,
-    pub(crate) classes: Planes<'a>,
-    pub(crate) objects: Planes<'a>,
-    pub(crate) name_bytes: Planes<'a>,
-    pub(crate) polygons: Planes<'a>,
-    pub(crate) names: &'a [u8],
-    pub(crate) rings: Planes<'a>,
-    pub(crate) points: Planes<'a>,
-    pub(crate) places: PlacesOfSection<'a>,
+    classes: Planes<'a>,
+    objects: Planes<'a>,
+    name_bytes: Planes<'a>,
+    polygons: Planes<'a>,
+    names: &'a [u8],
+    rings: Planes<'a>,
+    points: Planes<'a>,
+    places: PlacesOfSection<'a>,
 }
 
 /// The points of a section.
-pub(crate) enum PlacesOfSection<'a> {
+enum PlacesOfSection<'a> {
     /// East and north: steps on the coarse lattice, and what is left beside it.
     Planes { steps: [Planes<'a>; 2], beside: [Planes<'a>; 2] },
     /// Range-coded bits.
@@ -35,7 +35,7 @@ pub(crate) enum PlacesOfSection<'a> {
 
 impl<'a> Columns<'a> {
     /// Takes a section apart.
-    pub(crate) fn read(bytes: &'a [u8], is_coded: bool) -> Result<Self, Damage> {
+    fn read(bytes: &'a [u8], is_coded: bool) -> Result<Self, Damage> {
         let cursor = &mut Cursor::new(bytes);
         let step =
             i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
