@@ -14,6 +14,7 @@ use crate::{
     audit::audit,
     blob::{BlobHeader, BlobRefusal, MAX_BLOB_BYTES, MAX_BLOB_HEADER_BYTES, decoder_blob, unpack},
     block::Block,
+    failed::Failed,
     formats::{START_BYTES, other_format},
 };
 
@@ -249,8 +250,8 @@ impl<R: Read + Seek> BlobFile<R> {
         numbers: &[usize],
         decoding: &Decoding<'_>,
         scan: impl Fn(Vec<u8>, u64) -> Result<T, BlobRefusal> + Sync,
-        mut take: impl FnMut(usize, T) -> Result<(), ReadOsmError>,
-    ) -> Result<(), ReadOsmError> {
+        mut take: impl FnMut(usize, T) -> Result<(), Failed>,
+    ) -> Result<(), Failed> {
         const BLOBS_PER_THREAD: usize = 4;
         let pool = decoding.pool;
         let scan =

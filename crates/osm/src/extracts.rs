@@ -11,6 +11,7 @@ use crate::{
     blob::BlobRefusal,
     blobs::{BlobFile, Decoding, Header},
     block::Block,
+    failed::Failed,
     open_file::{Extract, open_file},
     read_request::ReadRequest,
     reading::Reading,
@@ -97,8 +98,8 @@ impl<R: Read + Seek> Extracts<R> {
         numbers: &[usize],
         on_bytes: &dyn Fn(u64),
         scan: impl Fn(Vec<u8>, u64) -> Result<T, BlobRefusal> + Sync,
-        mut take: impl FnMut([usize; 2], T) -> Result<(), ReadOsmError>,
-    ) -> Result<(), ReadOsmError> {
+        mut take: impl FnMut([usize; 2], T) -> Result<(), Failed>,
+    ) -> Result<(), Failed> {
         let mut rest = numbers;
         let mut done_bytes = 0;
         while let Some(&first) = rest.first() {

@@ -1,6 +1,6 @@
 //! Puts ways and the places of their nodes together, and makes roads of them.
 
-use std::ops::Range;
+use std::{io, ops::Range};
 
 use corniche_roads::Road;
 use corniche_store::Sorted;
@@ -10,6 +10,7 @@ use crate::{
     Defect, ExtractSummary, ReadOsmError,
     assemble::{Assembled, PlainWay, assemble},
     deferred::Deferred,
+    failed::Failed,
     layer_sink::LayerSink,
     locate_nodes::LocatedNodes,
     number_nodes::take_numbered,
@@ -37,17 +38,16 @@ pub(crate) struct RoadWays<'a> {
 impl<'a> RoadWays<'a> {
     /// Ways, how many there are and how many more have the id of another one, with the places of their nodes.
     pub(crate) fn of(
-        reading: &Reading<'_>,
         (ways, ways_count, duplicates): (SpoolReader<'a>, u64, u64),
         nodes: LocatedNodes<'a>,
         mut summary: ExtractSummary,
         defects: Deferred<'a>,
-    ) -> Result<Self, ReadOsmError> {
+    ) -> io::Result<Self> {
         let LocatedNodes { stops, needed, missing, lengths } = nodes;
         summary.left_out_ways = lengths;
         summary.left_out.duplicate = duplicates;
         (summary.nodes_needed, summary.nodes_missing) = (needed, missing);
-        let stops = stops.finish().map_err(|error| reading.scratch_failed(error))?;
+        let stops = stops.finish()?;
         Ok(Self { ways, ways_count, stops, summary, defects })
     }
 }
@@ -58,10 +58,10 @@ pub(crate) fn hand_out_roads(
     found: RoadWays<'_>,
     sink: &mut dyn LayerSink<Road, ExtractSummary>,
     on_defect: &mut dyn FnMut(Defect),
-) -> Result<(), ReadOsmError> {
+) -> Result<(), Failed> {
     let RoadWays { mut ways, ways_count, mut stops, mut summary, defects } = found;
     sink.begin();
-    defects.tell(on_defect).map_err(|error| reading.scratch_failed(error))?;
+    defects.tell(on_defect)?;
     let take = |assembled: Assembled, sink: &mut dyn LayerSink<Road, ExtractSummary>| {
         if let Some((reason, highway, length_um)) = assembled.left_out {
             let own = summary.left_out_ways.entry((reason, highway)).or_default();
@@ -89,12 +89,12 @@ fn hand_out(
     stops: &mut Sorted<'_, Stop>,
     sink: &mut dyn LayerSink<Road, ExtractSummary>,
     mut take: impl FnMut(Assembled, &mut dyn LayerSink<Road, ExtractSummary>),
-) -> Result<(), ReadOsmError> {
+) -> Result<(), Failed> {
     let pool = reading.request.pool;
     let placing = reading.request.placing();
     let with_ids = reading.request.node_ids;
     let mut done = 0;
-    let mut next = || Batch::read(reading, ways, stops, pool.current_num_threads());
+    let mut next = || Batch::read(ways, stops, pool.current_num_threads());
     let mut batch = next()?;
     let mut before: Vec<Vec<Assembled>> = Vec::new();
     while !(batch.ways.is_empty() && before.is_empty()) {
@@ -109,9 +109,10 @@ fn hand_out(
             before.drain(..).flatten().for_each(|assembled| take(assembled, sink));
             following
         });
-        let is_damaged = || Err(reading.scratch_failed(damaged()));
-        let results = assembled.into_iter().map(|some| some.unwrap_or_else(is_damaged));
-        before = results.collect::<Result<_, _>>()?;
+        let made = |some: Option<Result<_, _>>| -> Result<Vec<Assembled>, Failed> {
+            Ok(some.ok_or_else(damaged)??)
+        };
+        before = assembled.into_iter().map(made).collect::<Result<_, _>>()?;
         done += batch.ways.len() as u64;
         sink.reached(done, ways_count);
         batch = following?;
@@ -137,12 +138,10 @@ struct PackedWay {
 
 impl Batch {
     fn read(
-        reading: &Reading<'_>,
         ways: &mut SpoolReader<'_>,
         stops: &mut Sorted<'_, Stop>,
         threads: usize,
-    ) -> Result<Self, ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
+    ) -> io::Result<Self> {
         let mut batch = Self::default();
         while batch.ways.len() < threads * WAYS_PER_TASK * TASKS_PER_THREAD
             && batch.stops.len() < threads * STOPS_PER_THREAD
@@ -154,11 +153,11 @@ impl Batch {
                 kinds.extend(kind);
                 Some((way_id, nodes, first..kinds.len()))
             });
-            let Some((way_id, nodes, kind)) = way.map_err(failed)? else { break };
+            let Some((way_id, nodes, kind)) = way? else { break };
             let first = batch.stops.len();
             for _ in 0..nodes {
-                let stop = stops.next().ok_or_else(damaged).map_err(failed)?;
-                batch.stops.push(stop.map_err(failed)?);
+                let stop = stops.next().ok_or_else(damaged)?;
+                batch.stops.push(stop?);
             }
             let stops = first..batch.stops.len();
             batch.ways.push(PackedWay { way_id, kind, stops });

@@ -9,8 +9,9 @@ use corniche_store::Sorter;
 use rayon::prelude::*;
 
 use crate::{
-    LeftOutReason, LeftOutWays, ReadOsmError,
+    LeftOutReason, LeftOutWays,
     assemble::length_um,
+    failed::Failed,
     id_index::IdIndex,
     nodes::{NodeIds, NodePlaces},
     reading::Reading,
@@ -57,10 +58,9 @@ pub(crate) fn left_out_lengths(
     ways: Spool<'_>,
     ids: &NodeIds,
     places: &NodePlaces,
-) -> Result<Lengths, ReadOsmError> {
+) -> Result<Lengths, Failed> {
     const WAYS_PER_TASK: usize = 256;
     const BATCH_BYTES: usize = 1 << 20;
-    let failed = |error| reading.scratch_failed(error);
     let mut ways = ways.read();
     let mut lengths = Lengths::new();
     let index = IdIndex::new(ids.ids());
@@ -75,7 +75,7 @@ pub(crate) fn left_out_lengths(
                 bytes.extend(take_bytes(page)?);
                 Some(first..bytes.len())
             };
-            let Some(way) = ways.next(take).map_err(failed)? else { break };
+            let Some(way) = ways.next(take)? else { break };
             own.push(way);
         }
         if own.is_empty() {
@@ -86,7 +86,7 @@ pub(crate) fn left_out_lengths(
             tasks.map(|some| add_up(some, &bytes, &index, places)).collect()
         });
         for found in found {
-            for ((reason, highway), found) in found.ok_or_else(damaged).map_err(failed)? {
+            for ((reason, highway), found) in found.ok_or_else(damaged)? {
                 let all = lengths.entry((reason, highway.to_owned())).or_default();
                 all.ways += found.ways;
                 all.length_um += found.length_um;

@@ -79,6 +79,7 @@ mod area_loss;
 mod defect;
 mod defect_bytes;
 mod error;
+mod failed;
 mod kept_error;
 mod line_loss;
 mod summary;

@@ -5,9 +5,9 @@
 use std::io::{Read, Seek};
 
 use crate::{
-    ReadOsmError,
     block::Block,
     extracts::{Extracts, TOO_MUCH_FOUND},
+    failed::Failed,
     locate_nodes::{NodeSource, ShareOfNodes, read_places, tell_nodes},
     looked::{Looked, LookedAt},
     nodes::{FoundNode, NodeIds, NodePlaces},
@@ -33,7 +33,7 @@ impl<R: Read + Seek> NodesLast<'_, R> {
         ids: &NodeIds,
         on_bytes: &dyn Fn(u64),
         take: &mut dyn FnMut(FoundNode),
-    ) -> Result<(), ReadOsmError> {
+    ) -> Result<(), Failed> {
         let numbers: Vec<usize> = (0..std::mem::take(&mut self.unread)).collect();
         let scan = |block: Vec<u8>, most_bytes| {
             let block = Block::new(&block);
@@ -45,7 +45,7 @@ impl<R: Read + Seek> NodesLast<'_, R> {
             let (looked, has_others, found): (_, _, Vec<FoundNode>) = of_block;
             if has_others {
                 self.is_out_of_order = true;
-                return Err(reading.stopped());
+                return Err(reading.stopped().into());
             }
             first.take(reading, place, looked)?;
             found.into_iter().for_each(&mut *take);
@@ -64,7 +64,7 @@ impl<R: Read + Seek> NodeSource for NodesLast<'_, R> {
         ids: &NodeIds,
         share: &ShareOfNodes,
         places: &mut NodePlaces,
-    ) -> Result<(), ReadOsmError> {
+    ) -> Result<(), Failed> {
         let take = &mut |(number, location, version)| places.set(number, location, version);
         let (unread, read) = (self.unread, self.looked_at.node_blobs.len());
         let first: Vec<usize> = (0..unread).collect();

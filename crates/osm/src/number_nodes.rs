@@ -6,6 +6,7 @@ use corniche_store::Sorter;
 
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
+    failed::Failed,
     left_out_lengths::LeftOutNodes,
     reading::Reading,
     records::{Mention, WayRecord, WayUse},
@@ -44,9 +45,8 @@ pub(crate) fn number_nodes<'a>(
     summary: &mut ExtractSummary,
     on_defect: &mut dyn FnMut(Defect),
     left_out: Option<LeftOutNodes<'a>>,
-) -> Result<NumberedNodes<'a>, ReadOsmError> {
+) -> Result<NumberedNodes<'a>, Failed> {
     let (request, shares) = (reading.request, reading.shares());
-    let failed = |error| reading.scratch_failed(error);
     let mut numbered = NumberedNodes {
         ways: Spool::new(request.scratch, shares.spool),
         mentions: reading.sorter(shares.mentions),
@@ -60,7 +60,7 @@ pub(crate) fn number_nodes<'a>(
     let mut node_ids = Vec::new();
     for (count, way) in (0..).zip(ways) {
         reading.check_stop_at(count)?;
-        let way = way.map_err(failed)?;
+        let way = way?;
         // Without several extracts nothing is counted by way.
         if !way.facts.is_empty() {
             if let Some(newest) = newest.as_mut().filter(|newest| newest.way.way_id == way.way_id) {
@@ -70,11 +70,11 @@ pub(crate) fn number_nodes<'a>(
             } else {
                 newest = Some(Newest::of(&way));
             }
-            let facts = WayFacts::of_bytes(&way.facts).map_err(failed)?;
+            let facts = WayFacts::of_bytes(&way.facts)?;
             add_summary(summary, facts.counts);
             facts.defects.into_iter().for_each(&mut *on_defect);
         }
-        let kind = way.take_apart(&mut node_ids).map_err(failed)?;
+        let kind = way.take_apart(&mut node_ids)?;
         // Where ids are wanted, they stay before what the way is.
         let kept = if request.node_ids { &*way.bytes } else { kind };
         if is_left_out(kind) {
@@ -86,8 +86,7 @@ pub(crate) fn number_nodes<'a>(
                     let used = if carries { WayUse::Carrier } else { WayUse::Length };
                     numbered.add(way.way_id, &node_ids, used, kept)
                 }
-            }
-            .map_err(failed)?;
+            }?;
             continue;
         }
         let version = known_version(way.origin.version);
@@ -97,10 +96,8 @@ pub(crate) fn number_nodes<'a>(
                     && first != second
                 {
                     let reason = two_versions("way", way.way_id, [first, second]);
-                    return Err(ReadOsmError::History {
-                        path: request.extract(way.origin.file),
-                        reason,
-                    });
+                    let path = request.extract(way.origin.file);
+                    return Err(ReadOsmError::History { path, reason }.into());
                 }
                 *first = first.or(version);
                 numbered.duplicates += 1;
@@ -108,7 +105,7 @@ pub(crate) fn number_nodes<'a>(
             }
             _ => {
                 last = Some((way.way_id, version));
-                numbered.add(way.way_id, &node_ids, WayUse::Road, kept).map_err(failed)?;
+                numbered.add(way.way_id, &node_ids, WayUse::Road, kept)?;
             }
         }
     }

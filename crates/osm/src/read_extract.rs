@@ -23,6 +23,7 @@ use crate::{
     blobs::BlobFile,
     deferred::Deferred,
     extracts::{BlobOrder, Extracts},
+    failed::Failed,
     find_ways::{FoundWays, WaysWanted},
     hand_out::{RoadWays, hand_out_roads},
     layers::Layers,
@@ -106,7 +107,8 @@ pub fn read_extract(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<(), ReadOsmError> {
-    read_all(Extracts::open(request)?, request, layers, on_defect, should_stop)
+    let read = read_all(Extracts::open(request)?, request, layers, on_defect, should_stop);
+    read.map_err(|failed| failed.of(request.path))
 }
 
 /// Reads the layers of one extract from any source of bytes, as [`read_extract`] does from a file. `request.path` only names it in
@@ -123,7 +125,8 @@ pub fn read_extract_from<R: Read + Seek>(
 ) -> Result<(), ReadOsmError> {
     let request = ReadRequest { others: &[], ..*request };
     let file = BlobFile::open(request.path, source)?;
-    read_all(Extracts::of(vec![file]), &request, layers, on_defect, should_stop)
+    let read = read_all(Extracts::of(vec![file]), &request, layers, on_defect, should_stop);
+    read.map_err(|failed| failed.of(request.path))
 }
 
 fn read_all<R: Read + Seek>(
@@ -132,7 +135,7 @@ fn read_all<R: Read + Seek>(
     layers: Layers<'_>,
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
-) -> Result<(), ReadOsmError> {
+) -> Result<(), Failed> {
     let most = Cell::new(0);
     let told = |done: u64, all: u64| {
         // What is read once more is told once.
@@ -205,8 +208,7 @@ impl<'a> Found<'a> {
         file: &mut Extracts<R>,
         order: BlobOrder,
         wanted: &LayersWanted<'a>,
-    ) -> Result<Option<Self>, ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
+    ) -> Result<Option<Self>, Failed> {
         let mut outlines: Vec<Outlines<'_>> =
             wanted.outlines.iter().map(|&wanted| Outlines::new(reading, wanted)).collect();
         let mut of_roads = Deferred::new(reading.request.scratch, reading.shares().defects);
@@ -224,7 +226,7 @@ impl<'a> Found<'a> {
             numbered.push(nodes);
         }
         if wanted.roads.is_some() {
-            let ways = ways.finish().map_err(failed)?;
+            let ways = ways.finish()?;
             let on_defect = &mut |defect| of_roads.push(&defect);
             let others: u64 =
                 numbered.iter().map(|own: &NumberedNodes<'_>| own.mentions_count).sum();
@@ -237,12 +239,12 @@ impl<'a> Found<'a> {
         for own in numbered {
             let NumberedNodes { ways, mentions, left_out, ways_count, mentions_count, duplicates } =
                 own;
-            let mentions = mentions.finish().map_err(failed)?;
+            let mentions = mentions.finish()?;
             questions.push(NodeQuestions { mentions, mentions_count, left_out });
             layers.push((ways.read(), ways_count, duplicates));
         }
         let mut nodes = NodesLast { file, unread: order.nodes, looked_at, is_out_of_order: false };
-        let located = located.finish().map_err(failed)?;
+        let located = located.finish()?;
         let answers =
             locate_nodes(reading, &mut nodes, questions, located, &mut |layer, defect| {
                 objects.get_mut(layer).map_or(&mut of_roads, |own| &mut own.defects).push(&defect);
@@ -255,12 +257,12 @@ impl<'a> Found<'a> {
         let mut found = Self { outlines: Vec::new(), roads: None };
         for own in objects {
             let Some(((ways, count, _), nodes)) = layers.next() else { break };
-            let stops = nodes.stops.finish().map_err(failed)?;
+            let stops = nodes.stops.finish()?;
             found.outlines.push((own, LocatedWays { ways, stops, count, last: None }));
         }
         if let Some((ways, nodes)) = layers.next() {
             summary.nodes_seen = nodes_seen;
-            found.roads = Some(RoadWays::of(reading, ways, nodes, summary, of_roads)?);
+            found.roads = Some(RoadWays::of(ways, nodes, summary, of_roads)?);
         }
         Ok(Some(found))
     }
@@ -274,7 +276,7 @@ fn read_ways<'a, R: Read + Seek>(
     wanted: &LayersWanted<'_>,
     outlines: &mut [Outlines<'a>],
     on_defect: &mut dyn FnMut(Defect),
-) -> Result<Option<FoundWays<'a>>, ReadOsmError> {
+) -> Result<Option<FoundWays<'a>>, Failed> {
     let mut found = FoundWays::new(reading);
     let end = if outlines.is_empty() { file.len() } else { order.relations };
     let [relations, ways]: [Vec<usize>; 2] =
@@ -287,7 +289,7 @@ fn read_ways<'a, R: Read + Seek>(
     let mut way_ids: Vec<SoughtIds<'_>> =
         outlines.iter_mut().map(|own| own.take_way_ids(reading)).collect::<Result<_, _>>()?;
     let most_ids = (reading.shares().way_ids / size_of::<i64>() as u64).max(1) as usize;
-    let mut next_ids = || -> Result<Vec<Vec<i64>>, ReadOsmError> {
+    let mut next_ids = || -> Result<Vec<Vec<i64>>, Failed> {
         way_ids.iter_mut().map(|ids| ids.next(reading, most_ids)).collect()
     };
     let rest_bytes = file.bytes_of(&before.with_ways);

@@ -3,7 +3,7 @@
 use corniche_store::{SortRecord as _, Sorter};
 
 use crate::{
-    ReadOsmError,
+    failed::Failed,
     outlines::{
         located_ways::LocatedWays,
         records::{MemberRecord, OutlineLine, OutlineWayRecord},
@@ -17,20 +17,19 @@ pub(crate) fn hand_parts<'a>(
     reading: &Reading<'a>,
     mut members: SpoolReader<'a>,
     mut located: LocatedWays<'a>,
-) -> Result<Sorter<'a, OutlineWayRecord>, ReadOsmError> {
-    let failed = |error| reading.scratch_failed(error);
+) -> Result<Sorter<'a, OutlineWayRecord>, Failed> {
     let mut parts = Sorter::new(reading.request.scratch, reading.shares().way_ids);
     let mut count = 0;
-    while let Some(record) = members.next(MemberRecord::decode).map_err(failed)? {
+    while let Some(record) = members.next(MemberRecord::decode)? {
         let MemberRecord { member, object_number } = record;
         let way_id = member.way_id;
         reading.check_stop_at(count)?;
         count += 1;
-        let line = match located.find(reading, way_id)? {
+        let line = match located.find(way_id)? {
             Some(way) => OutlineLine::of(way.places.clone()),
             None => OutlineLine::NoWay,
         };
-        parts.push(OutlineWayRecord { object_number, member, line }).map_err(failed)?;
+        parts.push(OutlineWayRecord { object_number, member, line })?;
     }
     Ok(parts)
 }

@@ -1,6 +1,6 @@
 //! Makes areas from objects and the ways of their outlines.
 
-use std::collections::HashSet;
+use std::{collections::HashSet, io};
 
 use corniche_areas::{
     Area, AreaClass, AreaObject, Assembled, Coastline, OutlineError, OutlineWay, Polygon, assemble,
@@ -11,8 +11,9 @@ use rayon::prelude::*;
 
 use super::{over_seam, summary::AreaSummary};
 use crate::{
-    AreaLoss, Defect, ReadOsmError,
+    AreaLoss, Defect,
     ahead::Ahead,
+    failed::Failed,
     layer_sink::LayerSink,
     looked::check_held,
     outlines::records::{Known, OutlineLine, OutlineWayRecord, degrees_of, to_point},
@@ -35,7 +36,7 @@ pub(crate) fn make_areas(
     summary: &mut AreaSummary,
     sink: &mut dyn LayerSink<Area, AreaSummary>,
     on_defect: &mut dyn FnMut(Defect),
-) -> Result<(), ReadOsmError> {
+) -> Result<(), Failed> {
     let pool = reading.request.pool;
     let threads = pool.current_num_threads();
     let mut all_parts = Ahead::new(parts);
@@ -45,9 +46,9 @@ pub(crate) fn make_areas(
         let mut batch = Vec::new();
         let mut points = 0;
         while batch.len() < threads * OBJECTS_PER_THREAD && points < threads * POINTS_PER_THREAD {
-            let next = known.next(Known::decode).map_err(|error| reading.scratch_failed(error))?;
+            let next = known.next(Known::decode)?;
             let Some(known) = next else { break };
-            let parts = parts_of(reading, &mut all_parts, number)?;
+            let parts = parts_of(&mut all_parts, number)?;
             points += parts.iter().map(points_of).sum::<usize>();
             batch.push((known, parts));
             number += 1;
@@ -85,13 +86,11 @@ fn points_of(part: &OutlineWayRecord) -> usize {
 }
 
 fn parts_of(
-    reading: &Reading<'_>,
     parts: &mut Ahead<Sorted<'_, OutlineWayRecord>>,
     number: u64,
-) -> Result<Vec<OutlineWayRecord>, ReadOsmError> {
-    let failed = |error| reading.scratch_failed(error);
+) -> io::Result<Vec<OutlineWayRecord>> {
     let mut own = Vec::new();
-    while parts.peek().map_err(failed)?.is_some_and(|part| part.object_number == number) {
+    while parts.peek()?.is_some_and(|part| part.object_number == number) {
         own.extend(parts.take_next());
     }
     Ok(own)

@@ -8,8 +8,9 @@ use corniche_store::SortRecord as _;
 
 use super::{classed_line::ClassedLine, line_names::LineNames, summary::LineSummary};
 use crate::{
-    Defect, ReadOsmError,
+    Defect,
     ahead::Ahead,
+    failed::Failed,
     layer_sink::LayerSink,
     line_loss::LineLoss,
     location,
@@ -36,11 +37,11 @@ pub(crate) fn make_lines(
     summary: &mut LineSummary,
     (sink, on_defect): (&mut dyn LayerSink<ClassedLine, LineSummary>, &mut dyn FnMut(Defect)),
     mut names: Option<LineNames<'_, '_>>,
-) -> Result<(), ReadOsmError> {
+) -> Result<(), Failed> {
     let records = Ahead::new(iter::from_fn(|| members.next(MemberRecord::decode).transpose()));
     let mut members = Members { records, objects: Vec::new() };
     let (mut count, all) = (0, located.count);
-    while let Some((way_id, class)) = members.next_way(reading, classes)? {
+    while let Some((way_id, class)) = members.next_way(classes)? {
         reading.check_stop_at(count)?;
         if count.is_multiple_of(WAYS_TO_TELL) {
             // Relations name ways, too, that the file does not have.
@@ -49,7 +50,7 @@ pub(crate) fn make_lines(
         count += 1;
         let Some(class) = layer.class(class) else { continue };
         summary.ways += 1;
-        let made = match located.find(reading, way_id)? {
+        let made = match located.find(way_id)? {
             Some(way) => parts_of(reading, way, class).inspect(|_| {
                 tell_gaps(way, on_defect);
                 if let Some(names) = &mut names {
@@ -84,15 +85,11 @@ struct Members<I: Iterator> {
 
 impl<I: Iterator<Item = io::Result<MemberRecord>>> Members<I> {
     /// The next way and the number of the most important of the classes that objects give it.
-    fn next_way(
-        &mut self,
-        reading: &Reading<'_>,
-        classes: &[u8],
-    ) -> Result<Option<(i64, u8)>, ReadOsmError> {
+    fn next_way(&mut self, classes: &[u8]) -> io::Result<Option<(i64, u8)>> {
         let Self { records, objects } = self;
         let mut way: Option<(i64, u8)> = None;
         objects.clear();
-        while let Some(record) = records.peek().map_err(|error| reading.scratch_failed(error))? {
+        while let Some(record) = records.peek()? {
             let own = classes.get(record.object_number as usize).copied().unwrap_or(NO_CLASS);
             let way_id = record.member.way_id;
             let (id, class) = way.get_or_insert((way_id, NO_CLASS));

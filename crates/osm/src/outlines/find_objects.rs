@@ -7,10 +7,10 @@ use super::{
     judge::{Judge, OfBlock},
 };
 use crate::{
-    ReadOsmError,
     blobs::decode,
     block::Block,
     extracts::{Extracts, TOO_MUCH_FOUND},
+    failed::Failed,
     looked::{Looked, LookedAt},
     reading::{Reading, Step},
 };
@@ -24,7 +24,7 @@ pub(crate) fn find_objects<R: Read + Seek>(
     outlines: &mut [Outlines<'_>],
     with_ways: bool,
     later_bytes: u64,
-) -> Result<LookedAt, ReadOsmError> {
+) -> Result<LookedAt, Failed> {
     let mut looked_at = LookedAt::default();
     let all_bytes = file.bytes_of(numbers) + later_bytes;
     let on_bytes = &|bytes| reading.tell(Step::Ways, bytes, all_bytes);

@@ -5,10 +5,8 @@ use std::io;
 use corniche_store::Sorted;
 
 use crate::{
-    ReadOsmError,
     location::Location,
     number_nodes::take_numbered,
-    reading::Reading,
     records::Stop,
     spool::{SpoolReader, damaged},
 };
@@ -32,13 +30,9 @@ pub(crate) struct LocatedWay {
 
 impl LocatedWays<'_> {
     /// The way with this id, if it is one of them. Ways are asked for in ascending order of their ids.
-    pub(crate) fn find(
-        &mut self,
-        reading: &Reading<'_>,
-        way_id: i64,
-    ) -> Result<Option<&LocatedWay>, ReadOsmError> {
+    pub(crate) fn find(&mut self, way_id: i64) -> io::Result<Option<&LocatedWay>> {
         while self.last.as_ref().is_none_or(|way| way.way_id < way_id) {
-            self.last = self.next().map_err(|error| reading.scratch_failed(error))?;
+            self.last = self.next()?;
             if self.last.is_none() {
                 break;
             }
