@@ -6,6 +6,7 @@ use corniche_drape::{
     positions,
 };
 use corniche_geom::{HeightGrid, LatticeBounds, LatticePoint, Polyline};
+use corniche_testing::check_tin;
 use corniche_tin::{Placement, Surface, TinSpec, triangulate};
 
 /// How much of a length rounding in f64 may add to it or take away.
@@ -60,7 +61,7 @@ fn surface(bytes: &mut Unstructured<'_>, node_steps: i64) -> Result<Option<Surfa
         Ok(tin) => tin,
         Err(error) => panic!("small heights make a TIN: {error}"),
     };
-    tin.check_invariants();
+    check_tin(&tin);
     let placement = Placement {
         corner: LatticePoint::new(0, 0),
         node_steps: [node_steps; 2],

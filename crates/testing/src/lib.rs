@@ -37,6 +37,8 @@ mod random;
 mod raster;
 mod skip;
 mod tier;
+#[cfg(feature = "tins")]
+mod tins;
 
 pub use area_extract::extract_with_areas;
 pub use boundary_extract::extract_with_boundaries;
@@ -50,3 +52,5 @@ pub use random::Random;
 pub use raster::{Raster, raster_creation_options};
 pub use skip::skip;
 pub use tier::{Tier, cases, is_full, some_of};
+#[cfg(feature = "tins")]
+pub use tins::{check_covers_ground, check_tin};
