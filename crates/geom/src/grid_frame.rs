@@ -74,30 +74,25 @@ pub enum GridFrameError {
 /// `tile_min + k · cell` differs in its last bit between neighbours. The origin is the grid's phase (within
 /// one cell of CRS zero), so adjoining regions of one product get the same nodes and the same tile borders.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "GridFrameRecord", into = "GridFrameRecord")]
+#[serde(try_from = "GridFrameRecord")]
 pub struct GridFrame {
     origin_m: [f64; 2],
+    #[serde(rename = "cell_m")]
     cell: Cell,
     root_corner: NodeIndex,
     max_level: u8,
-    /// Lattice steps to a cell, east and north.
+    /// Lattice steps to a cell, east and north. They follow from the cell.
+    #[serde(skip_serializing)]
     steps: [i64; 2],
 }
 
 /// [`GridFrame`] as it is written down.
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 struct GridFrameRecord {
     origin_m: [f64; 2],
     cell_m: Cell,
     root_corner: NodeIndex,
     max_level: u8,
-}
-
-impl From<GridFrame> for GridFrameRecord {
-    fn from(frame: GridFrame) -> Self {
-        let GridFrame { origin_m, cell, root_corner, max_level, .. } = frame;
-        Self { origin_m, cell_m: cell, root_corner, max_level }
-    }
 }
 
 impl TryFrom<GridFrameRecord> for GridFrame {

@@ -1,6 +1,6 @@
 //! From a DEM and what the user says to the grid of a package.
 
-use corniche_geom::{GridFrame, NodeIndex};
+use corniche_geom::{ClipRecord, GridFrame, NodeIndex};
 use corniche_gis::{CrsError, CrsOperation, DemProjection, GridCrs, libraries};
 
 use crate::mosaics::mosaic::Mosaic;
@@ -8,7 +8,7 @@ use crate::plan::clip::{self, Asked};
 use crate::plan::datum_operations::datum_operations;
 use crate::plan::description::{describe, resampled_onto_first};
 use crate::plan::grid_plan::{
-    Clip, GridPlan, Method, MosaicRole, MosaicRoles, PlanOptions, Resampling, node_bounds_m,
+    GridPlan, Method, MosaicRole, MosaicRoles, PlanOptions, Resampling, node_bounds_m,
 };
 use crate::plan::kernel::Kernel;
 use crate::plan::layout::{self, Layout};
@@ -117,7 +117,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, GridError> {
         .collect::<Result<_, GridError>>()?;
     let working = layout.working;
     let data_bounds = node_bounds_m(&frame, [south_west, north_east]);
-    let clip = asked.map(|asked| Clip {
+    let clip = asked.map(|asked| ClipRecord {
         nodes: clip::on_lattice(&frame, asked.nodes),
         whole_data_bounds: node_bounds_m(&frame, whole),
         whole_wgs84_bounds: area_deg,

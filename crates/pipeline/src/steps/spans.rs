@@ -19,7 +19,7 @@ use corniche_spec::{
     Defect,
     artifacts::{self, Kind},
 };
-use corniche_tileset::{OuterGround, Sections, decode};
+use corniche_tileset::{Sections, decode};
 use corniche_tin::Tin;
 
 use crate::{BuildError, context::Context};
@@ -68,7 +68,7 @@ fn solve(context: &Context<'_>) -> Result<SpanTotals, BuildError> {
             let levels = context.levels;
             let dem = WholeDem { dem, plan: grid, levels, whole, threads, observer };
             let mut totals = solve(&dem)?;
-            let places: Vec<LatticePoint> = totals.outer.iter().map(OuterGround::at).collect();
+            let places: Vec<LatticePoint> = totals.outer.iter().map(|own| own.at).collect();
             totals.inputs = context.inputs.hash_unused(&dem.needed_files(&places)?, observer)?;
             Ok(totals)
         }

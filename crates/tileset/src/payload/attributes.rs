@@ -5,6 +5,7 @@ use serde::de::DeserializeOwned;
 
 use crate::limits::{MAX_SECTION_BYTES, MAX_TEXT_BYTES, MAX_WAYS};
 use crate::payload::damage::Damage;
+use crate::payload::number_codes::take_room;
 use crate::payload::tile_payload::RoadRecord;
 
 /// The whole section, in `bincode`'s legacy layout: every list starts with its length as u64. Lists after
@@ -69,11 +70,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
             .texts
             .get(index as usize)
             .ok_or(Damage::Invalid { what: "a text that does not exist" })?;
-        room = room.checked_sub(text.len()).ok_or(Damage::TooLarge {
-            what: "texts of all ways",
-            length: MAX_TEXT_BYTES as u64 + 1,
-            limit: MAX_TEXT_BYTES as u64,
-        })?;
+        take_room(&mut room, text.len(), MAX_TEXT_BYTES, "texts of all ways")?;
         Ok::<String, Damage>(text.clone())
     };
     let known = Damage::Invalid { what: "a value that this version does not know" };

@@ -36,6 +36,18 @@ impl<'a> Planes<'a> {
         })
     }
 
+    /// The sum of the numbers with `each` added to every one; refused beyond `most`, before anything is allocated for it.
+    pub(crate) fn total(self, each: u64, most: usize, what: &'static str) -> Result<usize, Damage> {
+        let mut sum = 0_u64;
+        for number in self.iter() {
+            sum = sum.saturating_add(number).saturating_add(each);
+            if sum > most as u64 {
+                return Err(Damage::TooLarge { what, length: sum, limit: most as u64 });
+            }
+        }
+        Ok(sum as usize)
+    }
+
     /// Whether all numbers are 0 because no byte stands for any of them.
     pub(crate) fn is_absent(self) -> bool {
         self.bytes.is_empty()
@@ -108,6 +120,19 @@ impl<'a> Cursor<'a> {
             Err(Damage::Invalid { what: "bytes left over at the end" })
         }
     }
+}
+
+/// Takes from the `room` that a section has left of `most`; `what` names it in the error.
+pub(crate) fn take_room(
+    room: &mut usize,
+    taken: usize,
+    most: usize,
+    what: &'static str,
+) -> Result<(), Damage> {
+    let limit = most as u64;
+    let too_large = Damage::TooLarge { what, length: limit + 1, limit };
+    *room = room.checked_sub(taken).ok_or(too_large)?;
+    Ok(())
 }
 
 #[cfg(test)]

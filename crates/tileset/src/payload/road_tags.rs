@@ -7,7 +7,7 @@ use corniche_roads::RoadAttributes;
 
 use crate::limits::MAX_TEXT_BYTES;
 use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, Planes};
+use crate::payload::number_codes::{Cursor, Planes, take_room};
 use crate::payload::tile_payload::RoadRecord;
 
 /// Columns of texts.
@@ -41,11 +41,7 @@ pub(crate) fn decode(bytes: &[u8], roads: &mut [RoadRecord]) -> Result<(), Damag
         for (road, index) in roads.iter_mut().zip(indices.iter()).filter(|(_, index)| *index > 0) {
             let text = usize::try_from(index - 1).ok().and_then(|index| known.get(index));
             let text = text.ok_or(Damage::Invalid { what: "a text that does not exist" })?;
-            room = room.checked_sub(text.len()).ok_or(Damage::TooLarge {
-                what: "texts of all ways",
-                length: MAX_TEXT_BYTES as u64 + 1,
-                limit: MAX_TEXT_BYTES as u64,
-            })?;
+            take_room(&mut room, text.len(), MAX_TEXT_BYTES, "texts of all ways")?;
             (*text).clone_into(texts_mut(&mut road.attributes)[column]);
         }
     }

@@ -11,7 +11,7 @@ use crate::limits::{MAX_LINE_VERTICES, MAX_POINTS, MAX_ROUTE_STEPS};
 use crate::payload::class_table::{self, Head, Heads, LineOrder};
 use crate::payload::coded_lines::LineCoder;
 use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::payload::number_codes::{Cursor, take_room};
 use crate::payload::points::decode_points;
 use crate::payload::range_coder::Reader;
 use crate::payload::roads_geo::surprises::{
@@ -144,11 +144,7 @@ fn decode_line(
             route.guess()?
         };
         let Some(vertex) = vertex else { break };
-        *room = room.checked_sub(1).ok_or(Damage::TooLarge {
-            what: "vertices of all lines",
-            length: MAX_LINE_VERTICES as u64 + 1,
-            limit: MAX_LINE_VERTICES as u64,
-        })?;
+        take_room(room, 1, MAX_LINE_VERTICES, "vertices of all lines")?;
         vertices.push(vertex);
         route.go(vertex)?;
     }

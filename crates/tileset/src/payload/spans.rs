@@ -11,11 +11,10 @@ use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_varints::zigzag;
 
 use crate::limits::{MAX_LINES, MAX_SPAN_POINTS};
-use crate::payload::class_table::take_points_of;
 use crate::payload::context::Context;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope;
-use crate::payload::number_codes::Cursor;
+use crate::payload::number_codes::{Cursor, take_room};
 use crate::payload::points::decode_points;
 use crate::payload::section_kind::Kind;
 use crate::payload::terrain;
@@ -75,7 +74,7 @@ pub(crate) fn decode(
     let mut points_of = Vec::with_capacity(count);
     for length in lengths.iter() {
         let points = usize::try_from(length).unwrap_or(usize::MAX).saturating_add(2);
-        take_points_of(MAX_SPAN_POINTS, &mut room, points)?;
+        take_room(&mut room, points, MAX_SPAN_POINTS, "points of a section")?;
         points_of.push(points);
     }
     let points = decode_points(cursor, points_of.iter().copied(), corner)?;

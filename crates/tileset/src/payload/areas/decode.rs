@@ -47,13 +47,13 @@ impl<'a> Columns<'a> {
             cursor.planes(count)?,
             cursor.planes(count)?,
         ];
-        let length = total(name_bytes, 0, cursor.left(), "bytes of all names")?;
+        let length = name_bytes.total(0, cursor.left(), "bytes of all names")?;
         let names = cursor.take(length)?;
-        let polygons_count = total(polygons, 1, MAX_AREA_RINGS, "number of polygons")?;
+        let polygons_count = polygons.total(1, MAX_AREA_RINGS, "number of polygons")?;
         let rings = cursor.planes(polygons_count)?;
-        let rings_count = total(rings, 1, MAX_AREA_RINGS, "number of rings")?;
+        let rings_count = rings.total(1, MAX_AREA_RINGS, "number of rings")?;
         let points = cursor.planes(rings_count)?;
-        let points_count = total(points, 3, MAX_POINTS, "number of points")?;
+        let points_count = points.total(3, MAX_POINTS, "number of points")?;
         let places = if is_coded {
             PlacesOfSection::Coded(cursor.take(cursor.left())?)
         } else {
@@ -162,18 +162,6 @@ impl Columns<'_> {
 
 /// No coarse lattice is wider than a tile of 2^40 steps.
 const MOST_STEP: i64 = 1 << 40;
-
-/// The sum of numbers with `each` added to every one; refused beyond `most`, before anything is allocated for it.
-fn total(numbers: Planes<'_>, each: u64, most: usize, what: &'static str) -> Result<usize, Damage> {
-    let mut sum = 0_u64;
-    for number in numbers.iter() {
-        sum = sum.saturating_add(number).saturating_add(each);
-        if sum > most as u64 {
-            return Err(Damage::TooLarge { what, length: sum, limit: most as u64 });
-        }
-    }
-    Ok(sum as usize)
-}
 
 /// Coordinates along an axis.
 struct Places<S, B> {
