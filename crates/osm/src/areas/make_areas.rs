@@ -16,7 +16,7 @@ use crate::{
     failed::Failed,
     layer_sink::LayerSink,
     looked::check_held,
-    outlines::records::{Known, OutlineLine, OutlineWayRecord, degrees_of, to_point},
+    outlines::records::{Known, OutlineWayRecord, degrees_of, to_point},
     read_request::Placing,
     reading::Reading,
     spool::SpoolReader,
@@ -49,7 +49,8 @@ pub(crate) fn make_areas(
             let next = known.next(Known::decode)?;
             let Some(known) = next else { break };
             let parts = parts_of(&mut all_parts, number)?;
-            points += parts.iter().map(points_of).sum::<usize>();
+            points +=
+                parts.iter().flat_map(OutlineWayRecord::points).map(<[_]>::len).sum::<usize>();
             batch.push((known, parts));
             number += 1;
         }
@@ -79,10 +80,6 @@ pub(crate) fn make_areas(
         }
         sink.reached(number, objects_count);
     }
-}
-
-fn points_of(part: &OutlineWayRecord) -> usize {
-    if let OutlineLine::Points(points) = &part.line { points.len() } else { 0 }
 }
 
 fn parts_of(
@@ -142,14 +139,8 @@ fn coastlines(
 ) -> Result<Vec<Coastline>, AreaLoss> {
     let mut lines = Vec::new();
     for part in parts {
-        let points = match &part.line {
-            OutlineLine::Points(points) => points,
-            OutlineLine::NoWay => return Err(AreaLoss::MissingWays),
-            OutlineLine::NoNodes => return Err(AreaLoss::MissingNodes),
-            OutlineLine::OutOfRange => return Err(AreaLoss::OutOfRange),
-        };
         let positions_deg: Vec<[f64; 2]> =
-            points.iter().copied().map(to_point).map(degrees_of).collect();
+            part.points()?.iter().copied().map(to_point).map(degrees_of).collect();
         let placed = (placing.place)(&positions_deg);
         let runs = placed
             .split(Option::is_none)
@@ -172,16 +163,13 @@ fn try_making(
     let mut ways: Vec<Line> = Vec::new();
     for part in parts {
         let is_inner = part.member.is_inner;
-        match &part.line {
-            OutlineLine::Points(points) => {
-                ways.push(Line {
-                    points: points.iter().copied().map(to_point).collect(),
-                    is_inner,
-                });
+        match part.points() {
+            Ok(points) => {
+                let points = points.iter().copied().map(to_point).collect();
+                ways.push(Line { points, is_inner });
             }
-            OutlineLine::NoWay => missing += 1,
-            OutlineLine::NoNodes => return Err(AreaLoss::MissingNodes),
-            OutlineLine::OutOfRange => return Err(AreaLoss::OutOfRange),
+            Err(AreaLoss::MissingWays) => missing += 1,
+            Err(loss) => return Err(loss),
         }
     }
     over_seam::join(&mut ways.iter_mut().map(|way| &mut way.points).collect::<Vec<_>>());

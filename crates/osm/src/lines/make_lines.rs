@@ -154,11 +154,10 @@ fn parts_of(
     if !parts.is_empty() {
         return Ok(parts);
     }
-    let valid: Vec<&location::Location> =
-        way.places.iter().filter(|place| is_valid(place)).collect();
+    let valid = way.places.iter().filter(|place| is_valid(place)).count();
     Err(if way.places.iter().any(is_missing) {
         LineLoss::MissingNodes
-    } else if valid.len() < way.places.len() || valid.len() < 2 {
+    } else if valid < way.places.len() || valid < 2 {
         LineLoss::OutOfRange
     } else {
         LineLoss::OutsideProjection

@@ -5,6 +5,7 @@ use corniche_geom::LatticePoint;
 use corniche_store::SortRecord;
 
 use crate::{
+    AreaLoss,
     location::{self, Location},
     records::Origin,
     wire::{
@@ -79,6 +80,18 @@ impl OutlineLine {
             Self::OutOfRange
         } else {
             Self::Points(locations.into())
+        }
+    }
+}
+
+impl OutlineWayRecord {
+    /// The places of its nodes, or why there is no area or line with it.
+    pub(crate) fn points(&self) -> Result<&[Location], AreaLoss> {
+        match &self.line {
+            OutlineLine::NoWay => Err(AreaLoss::MissingWays),
+            OutlineLine::NoNodes => Err(AreaLoss::MissingNodes),
+            OutlineLine::OutOfRange => Err(AreaLoss::OutOfRange),
+            OutlineLine::Points(points) => Ok(points),
         }
     }
 }
@@ -222,10 +235,7 @@ impl SortRecord for OutlineWayRecord {
     }
 
     fn extra_bytes(&self) -> usize {
-        match &self.line {
-            OutlineLine::Points(points) => size_of_val(&**points) + 16,
-            OutlineLine::NoWay | OutlineLine::NoNodes | OutlineLine::OutOfRange => 0,
-        }
+        self.points().map_or(0, |points| size_of_val(points) + 16)
     }
 }
 
