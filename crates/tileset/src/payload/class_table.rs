@@ -19,7 +19,7 @@ pub(crate) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, 
         let lines = u32::from_le_bytes(cursor.array()?) as usize;
         let length = u32::from_le_bytes(cursor.array()?) as usize;
         if (lines == 0) != (length == 0) {
-            return Err(Damage::Invalid { what: "the table of classes" });
+            return Err(Damage::Invalid("the table of classes"));
         }
         all_lines += lines;
         counts.push((class, lines, length));
@@ -65,7 +65,7 @@ impl LineOrder {
     pub(crate) fn check(&mut self, next: &Head) -> Result<(), Damage> {
         let next = Some((next.way_id, next.part));
         if next <= self.last {
-            return Err(Damage::Invalid { what: "lines are not sorted" });
+            return Err(Damage::Invalid("lines are not sorted"));
         }
         self.last = next;
         Ok(())

@@ -58,7 +58,7 @@ pub(crate) fn decode_in(
 
 /// Reads the section's bytes.
 fn decode(bytes: &[u8], layer: ClassedLayer) -> Result<Vec<LineRecord>, Damage> {
-    let invalid = |what| Damage::Invalid { what };
+    let invalid = |what| Damage::Invalid(what);
     let cursor = &mut Cursor::new(bytes);
     let step = i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
     let step = step.ok_or(invalid(line_text!(layer, "the spacing of the " many "' lattice")))?;
@@ -100,7 +100,7 @@ impl<S: Iterator<Item = u64>> Coordinates<S> {
         let place = self.last.checked_add(by).and_then(|last| last.checked_mul(self.step));
         let place = place.filter(|place| (-FARTHEST..=FARTHEST).contains(place));
         self.last = place.map_or(0, |place| place / self.step);
-        place.ok_or(Damage::Invalid { what: "a point far outside the tile" })
+        place.ok_or(Damage::Invalid("a point far outside the tile"))
     }
 }
 

@@ -84,21 +84,21 @@ impl<'a> Cursor<'a> {
     pub(crate) fn varint(&mut self) -> Result<u64, Damage> {
         varint(&mut self.bytes).map_err(|bad| match bad {
             BadVarint::Cut => Damage::TooShort,
-            BadVarint::TooLarge => Damage::Invalid { what: "a varint of more than 64 bits" },
+            BadVarint::TooLarge => Damage::Invalid("a varint of more than 64 bits"),
         })
     }
 
     /// A varint that may not be above `limit`; `what` names it in the error.
     pub(crate) fn bounded(&mut self, limit: usize, what: &'static str) -> Result<usize, Damage> {
         let value = self.varint()?;
-        usize::try_from(value).ok().filter(|&value| value <= limit).ok_or(Damage::Invalid { what })
+        usize::try_from(value).ok().filter(|&value| value <= limit).ok_or(Damage::Invalid(what))
     }
 
     /// What [`put_planes`] wrote for `count` values. The caller bounds `count`.
     pub(crate) fn planes(&mut self, count: usize) -> Result<Planes<'a>, Damage> {
         let planes = self.byte()?;
         if planes > 8 {
-            return Err(Damage::Invalid { what: "more than eight byte planes" });
+            return Err(Damage::Invalid("more than eight byte planes"));
         }
         Ok(Planes { bytes: self.take(count * usize::from(planes))?, count })
     }
@@ -114,11 +114,7 @@ impl<'a> Cursor<'a> {
 
     /// Fails if bytes are left.
     pub(crate) fn finish(&self) -> Result<(), Damage> {
-        if self.is_empty() {
-            Ok(())
-        } else {
-            Err(Damage::Invalid { what: "bytes left over at the end" })
-        }
+        if self.is_empty() { Ok(()) } else { Err(Damage::Invalid("bytes left over at the end")) }
     }
 }
 

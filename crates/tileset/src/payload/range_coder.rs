@@ -189,11 +189,7 @@ impl<'a> Reader<'a> {
 
     /// Fails unless exactly the bytes that are there were read.
     pub(crate) fn finish(&self) -> Result<(), Damage> {
-        if self.is_exact() {
-            Ok(())
-        } else {
-            Err(Damage::Invalid { what: "the length of the coded bits" })
-        }
+        if self.is_exact() { Ok(()) } else { Err(Damage::Invalid("the length of the coded bits")) }
     }
 
     #[inline]

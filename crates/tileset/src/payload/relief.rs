@@ -170,7 +170,7 @@ impl Relief {
         let mut parts = Parts::new();
         let units = parts.code(&mut reader, &head)?;
         if !reader.is_exact() {
-            return Err(Damage::Invalid { what: "the length of the relief" });
+            return Err(Damage::Invalid("the length of the relief"));
         }
         Ok(Self::assemble(bytes.to_vec(), &head, &units, parts))
     }

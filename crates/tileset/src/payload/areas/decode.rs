@@ -39,7 +39,7 @@ impl<'a> Columns<'a> {
         let cursor = &mut Cursor::new(bytes);
         let step =
             i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
-        let step = step.ok_or(Damage::Invalid { what: "the spacing of the areas' lattice" })?;
+        let step = step.ok_or(Damage::Invalid("the spacing of the areas' lattice"))?;
         let count = cursor.bounded(MAX_AREAS, "number of areas")?;
         let [classes, objects, name_bytes, polygons] = [
             cursor.planes(count)?,
@@ -113,9 +113,7 @@ pub(crate) fn decode(
                 let point = |_| {
                     let point = LatticePoint::new(east.next()?, north.next()?);
                     let is_inside = bounds.contains(point);
-                    is_inside
-                        .then_some(point)
-                        .ok_or(Damage::Invalid { what: "a point outside the tile" })
+                    is_inside.then_some(point).ok_or(Damage::Invalid("a point outside the tile"))
                 };
                 (0..count).map(point).collect()
             })
@@ -137,10 +135,10 @@ impl Columns<'_> {
         let heads = classes.iter().zip(objects.iter()).zip(name_bytes.iter()).zip(polygons.iter());
         for (((class, object), name_bytes), polygons) in heads {
             let number = u8::try_from(class >> 1).ok().and_then(AreaClass::from_number);
-            let class_of = number.ok_or(Damage::Invalid { what: "a class of areas" })?;
+            let class_of = number.ok_or(Damage::Invalid("a class of areas"))?;
             id = id.wrapping_add(zigzag(object));
             let name = str::from_utf8(names.take(name_bytes as usize)?)
-                .map_err(|_| Damage::Invalid { what: "a name that is no UTF-8" })?;
+                .map_err(|_| Damage::Invalid("a name that is no UTF-8"))?;
             let mut parts = Vec::new();
             for _ in 0..=polygons {
                 let mut of_part = Vec::new();
@@ -174,7 +172,7 @@ struct Places<S, B> {
 
 impl<S: Iterator<Item = u64>, B: Iterator<Item = u64>> Places<S, B> {
     fn next(&mut self) -> Result<i64, Damage> {
-        let wrong = Damage::Invalid { what: "a point outside the tile" };
+        let wrong = Damage::Invalid("a point outside the tile");
         let by = zigzag(self.steps.next().unwrap_or_default());
         let beside = i64::try_from(self.beside.next().unwrap_or_default());
         let last = self.last.checked_add(by);

@@ -167,7 +167,7 @@ impl Guide for Recorder<'_> {
     fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage> {
         let rest = &self.triangles[self.next..];
         let skip = rest.iter().position(|&[a, b, _]| !found.has(a, b));
-        self.next += skip.ok_or(Damage::Invalid { what: "number of triangles" })?;
+        self.next += skip.ok_or(Damage::Invalid("number of triangles"))?;
         let [a, b, c] = self.triangles[self.next];
         // Canonical order: each triangle starts with its smallest vertex, and they are sorted.
         for gap in [a - self.last, b - a - 1, c - a - 1] {
@@ -185,7 +185,7 @@ impl Guide for Recorder<'_> {
             return if corner.is_none() {
                 Ok(Answer::Nothing)
             } else {
-                Err(Damage::Invalid { what: "a triangle's vertex" })
+                Err(Damage::Invalid("a triangle's vertex"))
             };
         };
         let symbol = corner.map_or(NONE, |actual| rank(actual, first, guesses));
