@@ -260,6 +260,17 @@ impl GridFrame {
         LatticeBounds { min, max }
     }
 
+    /// The same in working metres.
+    #[must_use]
+    pub fn node_bounds_m(&self, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
+        Bounds {
+            min_x: self.x_m(south_west.i),
+            min_y: self.y_m(south_west.j),
+            max_x: self.x_m(north_east.i),
+            max_y: self.y_m(north_east.j),
+        }
+    }
+
     /// Position of a lattice point; for a node's point the same bits as [`GridFrame::x_m`], [`GridFrame::y_m`].
     #[must_use]
     pub fn position_m(&self, point: LatticePoint) -> [f64; 2] {
@@ -324,25 +335,20 @@ impl GridFrame {
     /// A tile's rectangle on the lattice.
     #[must_use]
     pub fn tile_lattice_bounds(&self, id: TileId) -> LatticeBounds {
-        let corner = self.tile_corner(id);
-        let side = TILE_CELLS * self.stride(id.z());
-        LatticeBounds {
-            min: self.lattice_of_node(NodeIndex { i: corner.i, j: corner.j - side }),
-            max: self.lattice_of_node(NodeIndex { i: corner.i + side, j: corner.j }),
-        }
+        self.lattice_bounds(self.tile_ends(id))
     }
 
     /// A tile's rectangle in the working CRS.
     #[must_use]
     pub fn tile_bounds(&self, id: TileId) -> Bounds {
-        let corner = self.tile_corner(id);
+        self.node_bounds_m(self.tile_ends(id))
+    }
+
+    /// The south-western and the north-eastern node of a tile.
+    fn tile_ends(&self, id: TileId) -> [NodeIndex; 2] {
+        let NodeIndex { i, j } = self.tile_corner(id);
         let side = TILE_CELLS * self.stride(id.z());
-        Bounds {
-            min_x: self.x_m(corner.i),
-            min_y: self.y_m(corner.j - side),
-            max_x: self.x_m(corner.i + side),
-            max_y: self.y_m(corner.j),
-        }
+        [NodeIndex { i, j: j - side }, NodeIndex { i: i + side, j }]
     }
 
     /// Column and row of the tile of `level` that holds a lattice point (the south-eastern one on a border);

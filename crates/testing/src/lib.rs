@@ -24,6 +24,7 @@ mod data;
 pub mod disks;
 #[cfg(feature = "hostile")]
 pub mod hostile;
+mod lengths;
 #[cfg(feature = "packages")]
 pub mod package;
 pub mod payload;
@@ -46,6 +47,7 @@ pub use coast_extract::extract_with_coast;
 #[cfg(feature = "rasters")]
 pub use colour_image::ColourImage;
 pub use data::{real_data, root, sample, srtm_heights};
+pub use lengths::length_steps;
 pub use projection::FlatProjection;
 pub use random::Random;
 #[cfg(feature = "rasters")]

@@ -119,17 +119,6 @@ pub(crate) enum Method {
     Resampled(Box<NodePositions>, Kernel),
 }
 
-/// The rectangle between two nodes, working metres.
-#[must_use]
-pub fn node_bounds_m(frame: &GridFrame, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
-    Bounds {
-        min_x: frame.x_m(south_west.i),
-        min_y: frame.y_m(south_west.j),
-        max_x: frame.x_m(north_east.i),
-        max_y: frame.y_m(north_east.j),
-    }
-}
-
 impl GridPlan {
     /// The rectangle in degrees for which PROJ's operations are chosen: that around all files, also
     /// where the plan is for a part of them.

@@ -1,6 +1,6 @@
 //! The grid of a package, from its manifest.
 
-use corniche_dem::{GridPlan, MosaicRoles, Resampling, node_bounds_m};
+use corniche_dem::{GridPlan, MosaicRoles, Resampling};
 use corniche_geom::{GridFrame, TILE_CELLS};
 use corniche_gis::{CrsError, RecordedCrs, libraries};
 use corniche_spec::manifest_texts;
@@ -22,7 +22,7 @@ pub fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
         scale: manifest.scale,
         clip: manifest.clip,
         polygon: None,
-        data_bounds: node_bounds_m(&frame, [south_west, north_east]),
+        data_bounds: frame.node_bounds_m([south_west, north_east]),
         wgs84_bounds: manifest.wgs84_bounds,
         // Whether other nodes than samples are thinned or resampled matters to nobody who has no samples.
         resampling: if manifest.nodes_are_samples {
