@@ -41,7 +41,7 @@ pub(crate) struct Origin {
 }
 
 impl Origin {
-    /// That of an object of a block, of which only this is known.
+    /// The origin of an object of a block, of which its version alone is known.
     pub(crate) fn of_version(version: i32) -> Self {
         Self { version: known_version(version).unwrap_or_default(), ..Self::default() }
     }
