@@ -6,6 +6,7 @@ use corniche_drape::{
     positions,
 };
 use corniche_geom::{HeightGrid, LatticeBounds, LatticePoint, Polyline};
+use corniche_testing::check_tin;
 use corniche_tin::{Placement, Surface, TinSpec, triangulate};
 
 /// How much of a length rounding in f64 may add to it or take away.
@@ -60,7 +61,7 @@ fn surface(bytes: &mut Unstructured<'_>, node_steps: i64) -> Result<Option<Surfa
         Ok(tin) => tin,
         Err(error) => panic!("small heights make a TIN: {error}"),
     };
-    tin.check_invariants();
+    check_tin(&tin);
     let placement = Placement {
         corner: LatticePoint::new(0, 0),
         node_steps: [node_steps; 2],
@@ -80,7 +81,7 @@ fn coordinate(bytes: &mut Unstructured<'_>, node_steps: i64) -> Result<i64> {
 
 fn check_drape(line: &Polyline, surface: &Surface) {
     let draped = corniche_drape::drape(line, surface);
-    let total = line.length_steps();
+    let total = corniche_testing::length_steps(line);
     let mut on_steps = 0.0;
     let mut from = 0;
     for part in &draped.lines {
@@ -200,10 +201,10 @@ fn check_clip(line: &Polyline, surface: &Surface, owned: [OwnedBorders; 2]) {
     for (bounds, owned) in [west, east].into_iter().zip(owned) {
         for part in clip(line, &bounds, owned) {
             assert!(part.points().iter().all(|&point| bounds.contains(point)), "outside: {part:?}");
-            kept_steps += part.length_steps();
+            kept_steps += corniche_testing::length_steps(&part);
         }
     }
-    let whole_steps: f64 = clip_closed(line, &all).iter().map(Polyline::length_steps).sum();
+    let whole_steps: f64 = clip_closed(line, &all).iter().map(corniche_testing::length_steps).sum();
     // Cuts are rounded to the lattice: by half a step on each side of at most five borders a segment.
     let slack = 5.0 * line.points().len() as f64;
     assert!(

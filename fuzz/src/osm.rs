@@ -3,11 +3,16 @@
 use std::{cell::LazyCell, collections::BTreeSet, io::Cursor, path::Path};
 
 use corniche_geom::LatticePoint;
-use corniche_osm::{Defect, ReadOsmError, ReadRequest, read_roads_from};
+use corniche_osm::{Defect, ReadOsmError, ReadRequest};
 use corniche_presets::parse_frc_table;
 use corniche_roads::FrcTable;
 use corniche_store::MemoryScratch;
 use corniche_testing::pbf::{header, raw};
+
+use roads::{check_summary, is_loss_of_way, read_roads_from};
+
+#[path = "../../crates/osm/tests/it/common/roads.rs"]
+mod roads;
 
 /// An extract of these bytes is read or refused, and every way with a `highway` tag is a road or counted under one reason.
 ///
@@ -89,7 +94,7 @@ fn read(file: &[u8], memory_bytes: u64) -> Found {
                     roads.push((road.way_id, points));
                 },
                 &mut |defect: Defect| {
-                    lost += u64::from(defect.is_loss_of_way());
+                    lost += u64::from(is_loss_of_way(&defect));
                     assert!(!defect.reason().is_empty());
                     defects.push(defect);
                 },
@@ -99,7 +104,7 @@ fn read(file: &[u8], memory_bytes: u64) -> Found {
     });
     let words = match read {
         Ok(summary) => {
-            summary.check_invariants();
+            check_summary(&summary);
             let left_out = summary.left_out;
             assert_eq!(left_out.total() - left_out.listed - left_out.class_off, lost);
             let way_ids = || roads.iter().map(|&(way_id, _)| way_id);

@@ -42,11 +42,7 @@ pub fn assemble(ways: &[OutlineWay<'_>]) -> Result<Assembled, OutlineError> {
     if found.segments.is_empty() {
         return Err(OutlineError::Nothing);
     }
-    let graph = PlanarGraph::new(found.segments)
-        .map_err(|OddEnds { count, first }| OutlineError::Open { ends: count, first })?;
-    let faces = inner_faces(&graph).faces;
-    let mut polygons: Vec<Polygon> = faces.iter().map(|walks| polygon_of(&graph, walks)).collect();
-    polygons.sort_unstable();
+    let polygons = polygons_of(found.segments)?;
     Ok(Assembled { polygons, repeated_segments: found.cancelled, divided_segments: found.divided })
 }
 
@@ -54,7 +50,7 @@ pub fn assemble(ways: &[OutlineWay<'_>]) -> Result<Assembled, OutlineError> {
 pub(crate) fn polygons_of(segments: Vec<Segment>) -> Result<Vec<Polygon>, OutlineError> {
     let graph = PlanarGraph::new(segments)
         .map_err(|OddEnds { count, first }| OutlineError::Open { ends: count, first })?;
-    let faces = inner_faces(&graph).faces;
+    let faces = inner_faces(&graph);
     let mut polygons: Vec<Polygon> = faces.iter().map(|walks| polygon_of(&graph, walks)).collect();
     polygons.sort_unstable();
     Ok(polygons)

@@ -4,7 +4,7 @@ use geo::Validation as _;
 use proptest::prelude::*;
 
 use super::*;
-use crate::chessboard::{DOUBLED_CELL, cells, groups, to_geo, ways_around};
+use crate::chessboard_tests::{DOUBLED_CELL, cells, groups, to_geo, ways_around};
 
 fn points(list: &[[i64; 2]]) -> Vec<LatticePoint> {
     list.iter().map(|&[u, v]| LatticePoint::new(u, v)).collect()

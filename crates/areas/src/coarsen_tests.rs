@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::{
     Ring,
-    chessboard::{cells, polygons_around, to_geo},
+    chessboard_tests::{cells, polygons_around, to_geo},
 };
 
 /// A step of 1 changes nothing.

@@ -112,7 +112,7 @@ pub(crate) fn cut(chain: &Chain, region: &LatticeRegion) -> Vec<Chain> {
         let inside = region.shares_inside([from, to]).unwrap_or_else(whole);
         let is_open = inside.last().is_some_and(|&[_, end]| end >= 1.0);
         for [begin, end] in inside {
-            let [inner_from, inner_to] = [begin, end].map(|share| at([from, to], share));
+            let [inner_from, inner_to] = [begin, end].map(|share| from.share_of_way(to, share));
             match parts.last_mut() {
                 Some(part) if open && begin <= 0.0 => {
                     part.points.push(inner_to);
@@ -136,12 +136,6 @@ pub(crate) fn cut(chain: &Chain, region: &LatticeRegion) -> Vec<Chain> {
     // A touch from outside is a point.
     parts.retain(|part| part.points.iter().any(|&point| Some(point) != part.first()));
     parts
-}
-
-/// The point of a segment at a share of it, rounded.
-fn at([from, to]: [LatticePoint; 2], share: f64) -> LatticePoint {
-    let along = |from: i64, to: i64| from + ((to - from) as f64 * share).round() as i64;
-    LatticePoint::new(along(from.u, to.u), along(from.v, to.v))
 }
 
 #[cfg(test)]

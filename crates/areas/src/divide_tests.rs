@@ -6,7 +6,7 @@ use geo::Validation as _;
 use proptest::prelude::*;
 
 use super::*;
-use crate::chessboard::{cells, polygons_around, to_geo};
+use crate::chessboard_tests::{cells, polygons_around, to_geo};
 
 fn doubled_area(polygons: &[Polygon]) -> i128 {
     polygons.iter().map(Polygon::doubled_area).sum()

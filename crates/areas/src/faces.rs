@@ -14,14 +14,8 @@ use crate::{planar_graph::PlanarGraph, segments::Segment, stabbing::Stabbing};
 /// The face west of everything.
 const OUTERMOST: usize = usize::MAX;
 
-/// The walks of all faces that are inside.
-pub(crate) struct InnerFaces {
-    /// The half-edges of the walks of each face, from any start.
-    pub(crate) faces: Vec<Vec<Vec<usize>>>,
-}
-
-/// Finds the faces inside.
-pub(crate) fn inner_faces(graph: &PlanarGraph) -> InnerFaces {
+/// Finds the faces inside: the half-edges of the walks of each face, from any start.
+pub(crate) fn inner_faces(graph: &PlanarGraph) -> Vec<Vec<Vec<usize>>> {
     let walks = Walks::new(graph);
     let parts = parts_of(graph, &walks);
     let stabbing =
@@ -141,7 +135,7 @@ fn spread(
     }
 }
 
-fn collect(graph: &PlanarGraph, walks: &Walks, face_of: &[Option<Face>]) -> InnerFaces {
+fn collect(graph: &PlanarGraph, walks: &Walks, face_of: &[Option<Face>]) -> Vec<Vec<Vec<usize>>> {
     let mut by_name: Vec<(usize, usize)> = face_of
         .iter()
         .enumerate()
@@ -153,11 +147,10 @@ fn collect(graph: &PlanarGraph, walks: &Walks, face_of: &[Option<Face>]) -> Inne
         for_each_half_edge(graph, walks.starts[walk], |half| all.push(half));
         all
     };
-    let faces = by_name
+    by_name
         .chunk_by(|a, b| a.0 == b.0)
         .map(|face| face.iter().map(|&(_, walk)| half_edges(walk)).collect())
-        .collect();
-    InnerFaces { faces }
+        .collect()
 }
 
 fn for_each_half_edge(graph: &PlanarGraph, start: usize, mut take: impl FnMut(usize)) {

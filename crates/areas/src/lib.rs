@@ -39,7 +39,7 @@ mod segments;
 mod stabbing;
 
 #[cfg(test)]
-mod chessboard;
+mod chessboard_tests;
 
 pub use area::{Area, AreaObject};
 pub use area_class::AreaClass;

@@ -1,6 +1,6 @@
 //! The edge of a region without holes, clockwise.
 
-use corniche_geom::{LatticePoint, LatticeRegion};
+use corniche_geom::{LatticePoint, LatticeRegion, dot};
 
 use crate::Ring;
 
@@ -45,8 +45,7 @@ impl RegionEdge {
         let (index, _) = self.nearest_side(point);
         let [from, to] = self.side(index);
         let share = share(from, to, point);
-        let at = |from: i64, to: i64| from + (share * (to - from) as f64).round() as i64;
-        LatticePoint::new(at(from.u, to.u), at(from.v, to.v))
+        from.share_of_way(to, share)
     }
 
     /// How far along the edge a point on it lies, be it rounded to the lattice.
@@ -83,12 +82,6 @@ fn share(from: LatticePoint, to: LatticePoint, point: LatticePoint) -> f64 {
     (dot(from, to, point) as f64 / dot(from, to, to) as f64).clamp(0.0, 1.0)
 }
 
-fn dot(from: LatticePoint, to: LatticePoint, point: LatticePoint) -> i128 {
-    i128::from(to.u - from.u) * i128::from(point.u - from.u)
-        + i128::from(to.v - from.v) * i128::from(point.v - from.v)
-}
-
 pub(crate) fn squared_distance(a: LatticePoint, b: LatticePoint) -> i128 {
-    let [east, north] = [a.u - b.u, a.v - b.v].map(i128::from);
-    east * east + north * north
+    dot(b, a, a)
 }

@@ -248,11 +248,7 @@ fn in_turns_where_equal(crossings: &mut [Crossing]) {
 }
 
 fn length_steps(chain: &Chain) -> f64 {
-    let steps = chain.points.windows(2).map(|pair| match pair {
-        &[from, to] => from.distance_steps(to),
-        _ => 0.0,
-    });
-    steps.sum()
+    chain.points.array_windows().map(|&[from, to]| from.distance_steps(to)).sum()
 }
 
 /// The lines along the edge from where coasts leave to where the next one enters, clockwise.

@@ -6,7 +6,7 @@ use corniche_geom::LatticeBounds;
 use proptest::prelude::*;
 
 use super::*;
-use crate::chessboard::random;
+use crate::chessboard_tests::random;
 
 fn coast(way_id: i64, points: &[(i64, i64)]) -> Coastline {
     Coastline { way_id, points: points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect() }

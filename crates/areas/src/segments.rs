@@ -1,6 +1,6 @@
 //! The segments of an outline: each once, none crossing another, none with a point of another in its middle.
 
-use corniche_geom::{LatticePoint, Side, cross, side};
+use corniche_geom::{LatticePoint, Side, cross, dot, side};
 
 use crate::outline::{OutlineError, OutlineWay};
 
@@ -178,8 +178,7 @@ fn round_div(dividend: i128, divisor: i128) -> i64 {
 fn divide(segments: &[Segment], mut points: Vec<(usize, LatticePoint)>) -> Vec<Segment> {
     let along = |&(number, point): &(usize, LatticePoint)| {
         let [a, b] = segments[number];
-        let [east, north] = [b.u - a.u, b.v - a.v].map(i128::from);
-        i128::from(point.u - a.u) * east + i128::from(point.v - a.v) * north
+        dot(a, b, point)
     };
     points.sort_unstable_by_key(|own| (own.0, along(own), own.1));
     points.dedup();

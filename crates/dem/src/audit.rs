@@ -221,7 +221,7 @@ impl Auditor<'_> {
         let dataset: &Dataset = self.files.dataset(block.file, source)?;
         source.read_stored(dataset, block.start, block.size, &mut self.stored)?;
         self.heights_m.clone_from(&self.stored);
-        source.convert(&mut self.heights_m);
+        source.values.convert(&mut self.heights_m);
         let mut found = FileAudit::default();
         for (&stored, &height_m) in self.stored.iter().zip(&self.heights_m) {
             found.add(stored, height_m, self.range_m);
@@ -250,7 +250,7 @@ impl Auditor<'_> {
         let dataset = self.files.dataset(file, source)?;
         let mut around_m = Vec::new();
         source.read_stored(dataset, start, size, &mut around_m)?;
-        source.convert(&mut around_m);
+        source.values.convert(&mut around_m);
         let limit_m = spikes::limit_m(source.spacing_m());
         Ok(spikes::is_spike(&around_m, size[0], [column - start[0], row - start[1]], limit_m))
     }
@@ -414,7 +414,7 @@ impl Audit {
             count: file.outside,
             samples: file.samples,
             height_m: worst.height_m,
-            stored: source.stored_text(worst.stored),
+            stored: source.values.stored_text(worst.stored),
             low_m,
             high_m,
         })
@@ -427,7 +427,7 @@ impl Audit {
     pub fn height_step_m(&self, dem: &Dem) -> f64 {
         let files = dem.sources.iter().zip(&self.files).filter(|(_, file)| file.samples > 0);
         let step_m = |(source, file): (&Source, &FileAudit)| {
-            if file.has_fractions { 0.0 } else { source.m_per_whole() }
+            if file.has_fractions { 0.0 } else { source.values.m_per_whole() }
         };
         files.map(step_m).reduce(f64::min).unwrap_or_default()
     }
@@ -444,7 +444,7 @@ impl Audit {
                 format!(
                     "{} m (stored as {}) at {x}, {y} in {}, column {}, row {}",
                     spike.height_m,
-                    source.stored_text(spike.stored),
+                    source.values.stored_text(spike.stored),
                     source.crs.label,
                     spike.column,
                     spike.row
@@ -456,7 +456,7 @@ impl Audit {
                 more => format!("; and {more} more"),
             };
             let limit_m = spikes::limit_m(source.spacing_m()).floor();
-            let option = first.first().map(|spike| source.stored_text(spike.stored));
+            let option = first.first().map(|spike| source.values.stored_text(spike.stored));
             format!(
                 "{}: samples that stand alone, more than {limit_m} m above or below all around them: {places}{more}; if such a value means \"no data\", \
                  give it with --nodata {}, and if all are heights, allow them with --height-range LOW,HIGH",
@@ -480,7 +480,7 @@ impl Audit {
             count: only.count,
             samples: all.samples,
             height_m: only.height_m,
-            stored: source.stored_text(only.stored),
+            stored: source.values.stored_text(only.stored),
             low_m: LOWEST_LAND_M,
             high_m: self.range_m[1],
         })
@@ -511,7 +511,7 @@ impl Audit {
         let names = holders.iter().map(|(source, _)| source.path.display().to_string());
         Some(AuditError::Sentinel {
             files: first_names(names),
-            stored: first.stored_text(entry.stored),
+            stored: first.values.stored_text(entry.stored),
             count: holders.iter().map(|(_, file)| count_in(file)).sum(),
             samples,
             height_m: entry.height_m,

@@ -30,9 +30,7 @@ pub use error::{
 pub use files::stored_values::OpenOptions;
 pub use plan::clip::nodes_within;
 pub use plan::footprint::Footprint;
-pub use plan::grid_plan::{
-    Clip, GridPlan, MosaicRoles, PlanOptions, PlanScale, Resampling, node_bounds_m,
-};
+pub use plan::grid_plan::{GridPlan, MosaicRoles, PlanOptions, Resampling};
 pub use reading::reader::{DemWindow, Reader};
 pub use reading::sample_surface::{SampleSurface, largest_of_parabola};
 pub use reading::samples::{SampleBlock, SampleRange};

@@ -81,13 +81,6 @@ impl Barycentric {
     pub(crate) fn sign_at_end(&self) -> Ordering {
         turn(self.edge[0], self.edge[1], self.segment[1])
     }
-
-    /// Compares the exits across the two edges of a triangle that meet at `apex`: `Greater` if that across the edge which
-    /// begins there is the later one. So the segment leaves across the edge that ends there.
-    #[inline]
-    pub(crate) fn compare_exits([p, q]: [LatticePoint; 2], apex: LatticePoint) -> Ordering {
-        turn(p, q, apex)
-    }
 }
 
 /// On which side of the line from `a` to `b` the point `c` lies, exactly: `Greater` on its left. The sign of

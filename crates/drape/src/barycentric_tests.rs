@@ -128,7 +128,7 @@ impl Case {
             assert_eq!(coordinate.at(p), self.at(first, p));
             assert_eq!(coordinate.rate(), self.rate(first));
             let side = area(p, q, self.corners[apex]).cmp(&0);
-            assert_eq!(Barycentric::compare_exits(self.segment, self.corners[apex]), side);
+            assert_eq!(turn(self.segment[0], self.segment[1], self.corners[apex]), side);
             // The identity of the proof, by its signs.
             let left = wide_product(self.at(first, p), self.rate(second));
             assert_eq!(left.cmp(&wide_product(self.at(second, p), self.rate(first))), side);
@@ -161,7 +161,7 @@ impl Case {
                 .into_iter()
                 .filter(|&corner| smallest.is_some() && self.exit(corner) == smallest)
                 .collect();
-            let expected = match Barycentric::compare_exits(self.segment, self.corners[apex]) {
+            let expected = match turn(self.segment[0], self.segment[1], self.corners[apex]) {
                 Ordering::Greater => vec![start],
                 Ordering::Less => vec![end],
                 Ordering::Equal => vec![start, end],
@@ -181,7 +181,7 @@ impl Case {
             return 0;
         }
         let smallest = (0..3).filter_map(|corner| self.exit(corner)).min();
-        let sides = self.corners.map(|corner| Barycentric::compare_exits([p, q], corner));
+        let sides = self.corners.map(|corner| turn(p, q, corner));
         for corner in 0..3 {
             let (start, end) = (sides[(corner + 1) % 3], sides[(corner + 2) % 3]);
             assert_eq!(

@@ -45,12 +45,11 @@ impl Parts {
             self.goes_on = false;
             return;
         };
-        let at = |share: f64| {
-            let along = |from: i64, to: i64| from + ((to - from) as f64 * share).round() as i64;
-            LatticePoint::new(along(p.u, q.u), along(p.v, q.v))
-        };
         let (whole_start, whole_end) = (from <= 0.0, to >= 1.0);
-        let ends = [if whole_start { p } else { at(from) }, if whole_end { q } else { at(to) }];
+        let ends = [
+            if whole_start { p } else { p.share_of_way(q, from) },
+            if whole_end { q } else { p.share_of_way(q, to) },
+        ];
         self.keep(Inside { ends, whole_start, whole_end });
     }
 }

@@ -72,7 +72,7 @@ fn polygons_side_by_side_do_not_cut() {
 
 /// Part of a line that lies inside, in lattice steps.
 fn length(parts: &[ClippedPart]) -> f64 {
-    parts.iter().map(|part| part.line.length_steps()).sum()
+    parts.iter().map(|part| corniche_testing::length_steps(&part.line)).sum()
 }
 
 proptest! {
@@ -113,6 +113,6 @@ proptest! {
         let both = length(&clip_region(&line, &inside)) + length(&clip_region(&line, &outside));
         // Each crossing is rounded to a step, and may leave over a stretch of two.
         let crossings = (corners.len() * radii.len()) as f64;
-        prop_assert!((both - line.length_steps()).abs() <= 4.0 * crossings, "{both}");
+        prop_assert!((both - corniche_testing::length_steps(&line)).abs() <= 4.0 * crossings, "{both}");
     }
 }

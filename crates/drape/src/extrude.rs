@@ -86,7 +86,7 @@ impl Near<'_> {
     fn search(&mut self, points: &[LatticePoint], first: usize, margin: i64) -> Range<usize> {
         let ends = |index: usize| {
             let (p, q) = (points[index], points[index + 1]);
-            LatticeBounds { min: p, max: p }.union(&LatticeBounds { min: q, max: q })
+            LatticeBounds::at(p).union(&LatticeBounds::at(q))
         };
         let mut bounds = ends(first);
         let mut end = first + 1;

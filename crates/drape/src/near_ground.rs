@@ -6,10 +6,6 @@ use corniche_tin::Surface;
 use crate::height_range::padded;
 use crate::segment_rectangle::SegmentRectangle;
 
-/// The share of the rectangle around a segment that may seem to be without ground although all of it is covered:
-/// rounding of areas.
-const UNCOVERED: f64 = 1e-9;
-
 /// A triangle some of which lies near is cut by two rectangles, which takes as long as to look at so many.
 const STEPS_OF_PART: usize = 4;
 
@@ -68,7 +64,7 @@ pub fn near_ground(
         return None;
     }
     // Slopes bound the heights only if there is ground everywhere between the segment and the place.
-    let is_covered = covered >= (1.0 - UNCOVERED) * near.area();
+    let is_covered = near.is_covered(covered);
     Some(if is_covered && beneath_range_m[0] <= beneath_range_m[1] {
         NearGround { range_m: padded(beneath_range_m), rise_m }
     } else {

@@ -101,7 +101,7 @@ impl Case {
         let draped = drape(line, &surface);
         let (lines, off_steps) = expected(line, &surface);
         assert_eq!(draped.lines, lines);
-        let total = line.length_steps();
+        let total = corniche_testing::length_steps(line);
         assert!(
             (off_ground_steps(line, &draped) - off_steps).abs() <= 1e-9 * total,
             "{draped:?} {off_steps}"

@@ -99,7 +99,7 @@ impl Ray<'_> {
         let k = half_edge % 3;
         let (next, previous) = (3 * triangle + (k + 1) % 3, 3 * triangle + (k + 2) % 3);
         let apex = self.surface.triangles()[triangle as usize][((k + 2) % 3) as usize];
-        match Barycentric::compare_exits([self.p, self.q], self.point(apex)) {
+        match turn(self.p, self.q, self.point(apex)) {
             Ordering::Equal => self.towards(apex, PlaceOnTin::Inside(triangle)),
             Ordering::Greater => self.out_of(next),
             Ordering::Less => self.out_of(previous),
@@ -150,8 +150,7 @@ impl Ray<'_> {
     fn through(&self, triangle: u32) -> Next {
         let corners = self.surface.triangles()[triangle as usize];
         // The smallest of three exits: it comes before that across the edge before it, and before that across the next one.
-        let sides =
-            corners.map(|vertex| Barycentric::compare_exits([self.p, self.q], self.point(vertex)));
+        let sides = corners.map(|vertex| turn(self.p, self.q, self.point(vertex)));
         for k in 0..3 {
             let (this, next, previous) = (sides[k], sides[(k + 1) % 3], sides[(k + 2) % 3]);
             if this.is_lt() && next.is_gt() {

@@ -6,10 +6,6 @@ use corniche_tin::Surface;
 use crate::height_range::padded;
 use crate::segment_rectangle::SegmentRectangle;
 
-/// The share of the rectangle beside a piece that may seem to be without ground although all of it is covered:
-/// rounding of areas.
-const UNCOVERED: f64 = 1e-9;
-
 /// A straight piece of a road on the ground, in one triangle. Plan positions are in lattice steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoadPiece {
@@ -103,7 +99,7 @@ pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64, work: &Work) -
             }
         }
     }
-    let is_covered = covered >= (1.0 - UNCOVERED) * beside.area();
+    let is_covered = beside.is_covered(covered);
     let [lowest_m, highest_m] = padded(range_m);
     RoadBed {
         cross_rise_m,

@@ -37,9 +37,12 @@ impl SegmentRectangle {
         Self { p, east, north, length, beyond, margin }
     }
 
-    /// Its area, square steps.
-    pub(crate) fn area(&self) -> f64 {
-        (self.length + self.beyond[0] + self.beyond[1]) * 2.0 * self.margin
+    /// Whether so many square steps of ground are all of it.
+    pub(crate) fn is_covered(&self, covered: f64) -> bool {
+        /// The share that may seem to be without ground although all of it is covered: rounding of areas.
+        const UNCOVERED: f64 = 1e-9;
+        let area = (self.length + self.beyond[0] + self.beyond[1]) * 2.0 * self.margin;
+        covered >= (1.0 - UNCOVERED) * area
     }
 
     /// What of a triangle lies in the rectangle.

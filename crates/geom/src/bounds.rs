@@ -121,11 +121,16 @@ impl LatticeBounds {
         }
     }
 
+    /// The rectangle of one point.
+    #[must_use]
+    pub fn at(point: LatticePoint) -> Self {
+        Self { min: point, max: point }
+    }
+
     /// The smallest rectangle around `points`; `None` without points.
     #[must_use]
     pub fn of(points: &[LatticePoint]) -> Option<Self> {
-        let alone = |&point: &LatticePoint| Self { min: point, max: point };
-        points.iter().map(alone).reduce(|bounds, point| bounds.union(&point))
+        points.iter().copied().map(Self::at).reduce(|bounds, point| bounds.union(&point))
     }
 
     /// The smallest rectangle around both.

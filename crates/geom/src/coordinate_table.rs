@@ -10,7 +10,7 @@ use crate::{Bounds, ProjectError, Projection, Seam, line_length_m, ring_area_m2,
 /// nearest four samples on each axis: its error falls with the fourth power of the spacing, so that some
 /// dozen samples a side suffice for a country. The inverse is computed by Newton's method on that interpolation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "TableRecord", into = "TableRecord")]
+#[serde(try_from = "TableRecord")]
 pub struct CoordinateTable {
     bounds: Bounds,
     size: usize,
@@ -19,17 +19,12 @@ pub struct CoordinateTable {
     samples_deg: Vec<[f64; 2]>,
 }
 
-#[derive(Serialize, Deserialize)]
+/// [`CoordinateTable`] as it is read, not checked yet.
+#[derive(Deserialize)]
 struct TableRecord {
     bounds: Bounds,
     size: usize,
     samples_deg: Vec<[f64; 2]>,
-}
-
-impl From<CoordinateTable> for TableRecord {
-    fn from(CoordinateTable { bounds, size, samples_deg }: CoordinateTable) -> Self {
-        Self { bounds, size, samples_deg }
-    }
 }
 
 impl TryFrom<TableRecord> for CoordinateTable {
@@ -118,16 +113,7 @@ impl CoordinateTable {
         bounds: Bounds,
         size: usize,
     ) -> Result<Self, CoordinateTableError> {
-        let last = (size - 1) as f64;
-        let mut samples_deg = Vec::with_capacity(size * size);
-        for row in 0..size {
-            for column in 0..size {
-                samples_deg.push([
-                    bounds.min_x + bounds.width() * (column as f64 / last),
-                    bounds.min_y + bounds.height() * (row as f64 / last),
-                ]);
-            }
-        }
+        let mut samples_deg = positions(bounds, size, size, 0.0);
         projection.wgs84_from_working(&mut samples_deg)?;
         // Each longitude is moved next to its neighbour's: a table may be wider than half the earth.
         let center = size / 2;
@@ -153,17 +139,8 @@ impl CoordinateTable {
 
     /// Largest distance between interpolated and projected positions at the midpoints of all samples.
     fn error_m(&self, projection: &dyn Projection) -> Result<f64, ProjectError> {
-        let last = (self.size - 1) as f64;
-        let mut truth = Vec::new();
-        for row in 0..self.size - 1 {
-            for column in 0..self.size - 1 {
-                truth.push([
-                    self.bounds.min_x + self.bounds.width() * ((column as f64 + 0.5) / last),
-                    self.bounds.min_y + self.bounds.height() * ((row as f64 + 0.5) / last),
-                ]);
-            }
-        }
-        let positions = truth.clone();
+        let positions = positions(self.bounds, self.size, self.size - 1, 0.5);
+        let mut truth = positions.clone();
         projection.wgs84_from_working(&mut truth)?;
         Ok(positions.iter().zip(&truth).fold(0.0, |worst: f64, (position, truth)| {
             let [lon, lat] = self.wgs84_from_working(*position);
@@ -297,6 +274,19 @@ pub fn width_factor(scale: [f64; 2], direction: [f64; 2]) -> f64 {
     let [dx, dy] = if length > 0.0 { direction.map(|part| part / length) } else { [1.0, 0.0] };
     let [sx, sy] = scale;
     sx * sy * libm::hypot(dx / sx, dy / sy)
+}
+
+/// Positions of `count × count` samples of a table that has `size × size`, or beside each of them by a share of their spacing.
+fn positions(bounds: Bounds, size: usize, count: usize, beside: f64) -> Vec<[f64; 2]> {
+    let last = (size - 1) as f64;
+    let share = |index: usize| (index as f64 + beside) / last;
+    let position = |index: usize| {
+        [
+            bounds.min_x + bounds.width() * share(index % count),
+            bounds.min_y + bounds.height() * share(index / count),
+        ]
+    };
+    (0..count * count).map(position).collect()
 }
 
 /// First sample and the four weights of Lagrange's cubic at `t`, in units of the spacing.

@@ -74,30 +74,25 @@ pub enum GridFrameError {
 /// `tile_min + k · cell` differs in its last bit between neighbours. The origin is the grid's phase (within
 /// one cell of CRS zero), so adjoining regions of one product get the same nodes and the same tile borders.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "GridFrameRecord", into = "GridFrameRecord")]
+#[serde(try_from = "GridFrameRecord")]
 pub struct GridFrame {
     origin_m: [f64; 2],
+    #[serde(rename = "cell_m")]
     cell: Cell,
     root_corner: NodeIndex,
     max_level: u8,
-    /// Lattice steps to a cell, east and north.
+    /// Lattice steps to a cell, east and north. They follow from the cell.
+    #[serde(skip_serializing)]
     steps: [i64; 2],
 }
 
 /// [`GridFrame`] as it is written down.
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 struct GridFrameRecord {
     origin_m: [f64; 2],
     cell_m: Cell,
     root_corner: NodeIndex,
     max_level: u8,
-}
-
-impl From<GridFrame> for GridFrameRecord {
-    fn from(frame: GridFrame) -> Self {
-        let GridFrame { origin_m, cell, root_corner, max_level, .. } = frame;
-        Self { origin_m, cell_m: cell, root_corner, max_level }
-    }
 }
 
 impl TryFrom<GridFrameRecord> for GridFrame {
@@ -265,6 +260,17 @@ impl GridFrame {
         LatticeBounds { min, max }
     }
 
+    /// The same in working metres.
+    #[must_use]
+    pub fn node_bounds_m(&self, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
+        Bounds {
+            min_x: self.x_m(south_west.i),
+            min_y: self.y_m(south_west.j),
+            max_x: self.x_m(north_east.i),
+            max_y: self.y_m(north_east.j),
+        }
+    }
+
     /// Position of a lattice point; for a node's point the same bits as [`GridFrame::x_m`], [`GridFrame::y_m`].
     #[must_use]
     pub fn position_m(&self, point: LatticePoint) -> [f64; 2] {
@@ -329,25 +335,20 @@ impl GridFrame {
     /// A tile's rectangle on the lattice.
     #[must_use]
     pub fn tile_lattice_bounds(&self, id: TileId) -> LatticeBounds {
-        let corner = self.tile_corner(id);
-        let side = TILE_CELLS * self.stride(id.z());
-        LatticeBounds {
-            min: self.lattice_of_node(NodeIndex { i: corner.i, j: corner.j - side }),
-            max: self.lattice_of_node(NodeIndex { i: corner.i + side, j: corner.j }),
-        }
+        self.lattice_bounds(self.tile_ends(id))
     }
 
     /// A tile's rectangle in the working CRS.
     #[must_use]
     pub fn tile_bounds(&self, id: TileId) -> Bounds {
-        let corner = self.tile_corner(id);
+        self.node_bounds_m(self.tile_ends(id))
+    }
+
+    /// The south-western and the north-eastern node of a tile.
+    fn tile_ends(&self, id: TileId) -> [NodeIndex; 2] {
+        let NodeIndex { i, j } = self.tile_corner(id);
         let side = TILE_CELLS * self.stride(id.z());
-        Bounds {
-            min_x: self.x_m(corner.i),
-            min_y: self.y_m(corner.j - side),
-            max_x: self.x_m(corner.i + side),
-            max_y: self.y_m(corner.j),
-        }
+        [NodeIndex { i, j: j - side }, NodeIndex { i: i + side, j }]
     }
 
     /// Column and row of the tile of `level` that holds a lattice point (the south-eastern one on a border);

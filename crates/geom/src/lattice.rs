@@ -26,6 +26,13 @@ impl LatticePoint {
         [self.u as f64, self.v as f64]
     }
 
+    /// The lattice point nearest to where a share of the way to `other` is done.
+    #[must_use]
+    pub fn share_of_way(self, other: Self, share: f64) -> Self {
+        let along = |from: i64, to: i64| from + ((to - from) as f64 * share).round() as i64;
+        Self::new(along(self.u, other.u), along(self.v, other.v))
+    }
+
     /// Distance to `other` in lattice steps.
     #[must_use]
     pub fn distance_steps(self, other: Self) -> f64 {

@@ -204,22 +204,6 @@ impl LatticeRegion {
             edges.filter(move |edge| own == first || band(edge.low.v) == own)
         })
     }
-
-    /// Asserts what every region promises; for tests.
-    ///
-    /// # Panics
-    /// When it does not hold.
-    pub fn check_invariants(&self) {
-        for edge in &self.edges {
-            assert!(edge.low != edge.high && edge.low.v <= edge.high.v, "{edge:?}");
-            assert!(self.bounds.contains(edge.low) && self.bounds.contains(edge.high), "{edge:?}");
-            for v in [edge.low.v, edge.high.v] {
-                assert!(self.edges_between(v, v).any(|found| found == edge), "{edge:?} at {v}");
-            }
-        }
-        let all: Vec<&Edge> = self.edges_between(self.bounds.min.v, self.bounds.max.v).collect();
-        assert_eq!(all.len(), self.edges.len(), "each edge once");
-    }
 }
 
 impl Edge {

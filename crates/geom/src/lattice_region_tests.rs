@@ -9,6 +9,21 @@ fn points(corners: &[[i64; 2]]) -> Vec<LatticePoint> {
     corners.iter().map(|&[u, v]| LatticePoint::new(u, v)).collect()
 }
 
+impl LatticeRegion {
+    /// Asserts what every region promises.
+    fn check_invariants(&self) {
+        for edge in &self.edges {
+            assert!(edge.low != edge.high && edge.low.v <= edge.high.v, "{edge:?}");
+            assert!(self.bounds.contains(edge.low) && self.bounds.contains(edge.high), "{edge:?}");
+            for v in [edge.low.v, edge.high.v] {
+                assert!(self.edges_between(v, v).any(|found| found == edge), "{edge:?} at {v}");
+            }
+        }
+        let all: Vec<&Edge> = self.edges_between(self.bounds.min.v, self.bounds.max.v).collect();
+        assert_eq!(all.len(), self.edges.len(), "each edge once");
+    }
+}
+
 fn region(polygons: &[&[&[[i64; 2]]]]) -> LatticeRegion {
     let polygons: Vec<Vec<Vec<LatticePoint>>> =
         polygons.iter().map(|rings| rings.iter().map(|ring| points(ring)).collect()).collect();

@@ -30,6 +30,15 @@ pub fn cross(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> i128 {
     }
 }
 
+/// The product of the vectors from `from` to `to` and to `point`, in square lattice steps: positive where these are less than a right angle
+/// apart. Exact for all coordinates below 2^62.
+#[must_use]
+#[inline]
+pub fn dot(from: LatticePoint, to: LatticePoint, point: LatticePoint) -> i128 {
+    i128::from(to.u - from.u) * i128::from(point.u - from.u)
+        + i128::from(to.v - from.v) * i128::from(point.v - from.v)
+}
+
 /// On which side of the line from `a` to `b` the point `c` lies, exactly.
 #[must_use]
 #[inline]

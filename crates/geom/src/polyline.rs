@@ -41,12 +41,6 @@ impl Polyline {
     pub fn into_points(self) -> Vec<LatticePoint> {
         self.points
     }
-
-    /// Length in plan, in lattice steps.
-    #[must_use]
-    pub fn length_steps(&self) -> f64 {
-        self.points.windows(2).map(|pair| pair[0].distance_steps(pair[1])).sum()
-    }
 }
 
 #[cfg(test)]

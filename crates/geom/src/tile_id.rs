@@ -94,7 +94,7 @@ impl TileId {
     /// The tile above; `None` for the root.
     #[must_use]
     pub fn parent(self) -> Option<Self> {
-        (self.z > 0).then(|| Self { z: self.z - 1, x: self.x / 2, y: self.y / 2 })
+        self.z.checked_sub(1).map(|z| self.ancestor(z))
     }
 
     /// The tile of level `z` (at most its own) that holds this one.

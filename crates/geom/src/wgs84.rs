@@ -30,9 +30,7 @@ pub fn radii_of_m(semi_major_m: f64, eccentricity_2: f64, latitude_deg: f64) -> 
 #[must_use]
 pub fn short_distance_m(from_deg: [f64; 2], to_deg: [f64; 2]) -> f64 {
     let [parallel_m, meridian_m] = radii_m(f64::midpoint(from_deg[1], to_deg[1]));
-    let turns = (to_deg[0] - from_deg[0]) / 360.0;
-    // The shorter way around the earth.
-    let east = ((turns - turns.round()) * 360.0).to_radians();
+    let east = radians_east(from_deg, to_deg);
     let north = (to_deg[1] - from_deg[1]).to_radians();
     (parallel_m * east).hypot(meridian_m * north)
 }
@@ -58,9 +56,14 @@ pub fn area_beside_m2(from_deg: [f64; 2], to_deg: [f64; 2]) -> f64 {
 }
 
 fn doubled_beside(from_deg: [f64; 2], to_deg: [f64; 2]) -> f64 {
+    radians_east(from_deg, to_deg)
+        * (equal_area_latitude(from_deg[1]) + equal_area_latitude(to_deg[1]))
+}
+
+/// How far a position lies to the east of another one, the shorter way around the earth.
+fn radians_east(from_deg: [f64; 2], to_deg: [f64; 2]) -> f64 {
     let turns = (to_deg[0] - from_deg[0]) / 360.0;
-    let east = ((turns - turns.round()) * 360.0).to_radians();
-    east * (equal_area_latitude(from_deg[1]) + equal_area_latitude(to_deg[1]))
+    ((turns - turns.round()) * 360.0).to_radians()
 }
 
 fn half_of_doubled_m2(doubled: f64) -> f64 {

@@ -35,7 +35,7 @@ pub use crs::vertical::{VerticalCrs, grid_names};
 pub use error::{CrsError, FileUse, NameError, NotUtf8, PolygonError, RasterError, VectorError};
 pub use error::{first_names, listed_files, names_up_to};
 pub use files::georeference::Georeference;
-pub use files::named_files::{expand_extract_name, expand_name, expand_photo_name, unpack_name};
+pub use files::named_files::{Sought, expand_name, unpack_name};
 pub use files::open::{OpenRasters, open_raster, stand_in};
 pub use files::placed_raster::{PlacedRaster, RasterOnGrid};
 pub use files::raster_files::{FileBlocks, has_own_mask, raster_files};

@@ -21,9 +21,13 @@ use std::{
 };
 
 use corniche_geom::LatticePoint;
-use corniche_osm::{ReadRequest, read_roads};
+use corniche_osm::ReadRequest;
 use corniche_presets::parse_frc_table;
 use corniche_store::{Scratch, Span};
+use roads::read_roads;
+
+#[path = "../tests/it/common/roads.rs"]
+mod roads;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = env::args().skip(1).collect();

@@ -31,21 +31,6 @@ pub enum AreaLoss {
 }
 
 impl AreaLoss {
-    /// All of them.
-    pub const ALL: [Self; 11] = [
-        Self::OpenWay,
-        Self::OpenOutline,
-        Self::MissingWays,
-        Self::MissingNodes,
-        Self::OutOfRange,
-        Self::CrossingOutline,
-        Self::NoOutline,
-        Self::TooIntricate,
-        Self::OutsideProjection,
-        Self::Duplicate,
-        Self::ContradictingCoastline,
-    ];
-
     /// The name to count it under, in words.
     #[must_use]
     pub const fn reason(self) -> &'static str {

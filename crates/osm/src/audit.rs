@@ -8,7 +8,7 @@
 
 use crate::{
     packed::{SHORT_LIMIT, count_short},
-    wire::{self, Numbers, Value, WireError, varint, zigzag},
+    wire::{self, Field, Numbers, Value, WireError, varint, zigzag},
 };
 
 /// The largest record of the decoder, of a relation, has some 200 bytes; lists of records grow by doubling.
@@ -195,32 +195,23 @@ impl Audit {
     }
 
     fn way(&mut self, way: &[u8]) -> Result<(), String> {
-        let (mut id, mut has_id, mut keys, mut values) = (0, false, 0, 0);
+        let mut own = Tagged::of("way");
         let mut nodes = Sum::default();
         let mut places = [Sum::default(); 2];
         for field in wire::fields(way) {
             let field = field?;
             match field.number {
-                1 => (id, has_id) = (field.value.varint()?.cast_signed(), true),
-                2 => keys += self.text_numbers("way", id, field.value)?,
-                3 => values += self.text_numbers("way", id, field.value)?,
-                4 => self.message(field.value.bytes()?)?,
                 8 => self.add_up(field.value, &mut nodes, "the ids of a way's nodes")?,
                 9 | 10 => {
                     let axis = field.number as usize - 9;
                     self.add_up_places(field.value, axis, &mut places[axis])?;
                 }
-                _ => self.spend(UNKNOWN_BYTES)?,
+                _ => self.tagged(&mut own, field)?,
             }
         }
         let [lats, lons] = places.map(|sum| sum.count);
-        if !has_id {
-            Err(format!("a way {INCOMPLETE}: its id"))
-        } else if keys != values {
-            Err(format!("way {id} has {keys} keys and {values} values"))
-        } else if keys > MAX_TAGS {
-            Err(format!("way {id} has {keys} tags"))
-        } else if lats != lons || (lats != 0 && lats != nodes.count) {
+        let id = own.check()?;
+        if lats != lons || (lats != 0 && lats != nodes.count) {
             Err(format!(
                 "way {id} has {} nodes, {lats} latitudes and {lons} longitudes",
                 nodes.count
@@ -231,16 +222,12 @@ impl Audit {
     }
 
     fn relation(&mut self, relation: &[u8]) -> Result<(), String> {
-        let (mut id, mut has_id, mut keys, mut values) = (0, false, 0, 0);
+        let mut own = Tagged::of("relation");
         let (mut roles, mut kinds) = (0, 0);
         let mut members = Sum::default();
         for field in wire::fields(relation) {
             let field = field?;
             match field.number {
-                1 => (id, has_id) = (field.value.varint()?.cast_signed(), true),
-                2 => keys += self.text_numbers("relation", id, field.value)?,
-                3 => values += self.text_numbers("relation", id, field.value)?,
-                4 => self.message(field.value.bytes()?)?,
                 8 => {
                     roles += field.value.numbers()?.count();
                     self.count(field.value)?;
@@ -251,28 +238,36 @@ impl Audit {
                         let kind = kind?;
                         kinds += 1;
                         if kind > LAST_MEMBER_KIND {
-                            return Err(format!("a member of relation {id} is of kind {kind}"));
+                            return Err(format!(
+                                "a member of relation {} is of kind {kind}",
+                                own.id
+                            ));
                         }
                     }
                     self.spend_on_numbers(field.value)?;
                 }
-                _ => self.spend(UNKNOWN_BYTES)?,
+                _ => self.tagged(&mut own, field)?,
             }
         }
         let ids = members.count;
-        if !has_id {
-            Err(format!("a relation {INCOMPLETE}: its id"))
-        } else if keys != values {
-            Err(format!("relation {id} has {keys} keys and {values} values"))
-        } else if keys > MAX_TAGS {
-            Err(format!("relation {id} has {keys} tags"))
-        } else if [roles as u64, kinds] != [ids; 2] {
-            Err(format!(
-                "relation {id} has {ids} members, {roles} roles and {kinds} kinds of members"
-            ))
-        } else {
-            Ok(())
+        let id = own.check()?;
+        if [roles as u64, kinds] == [ids; 2] {
+            return Ok(());
         }
+        Err(format!("relation {id} has {ids} members, {roles} roles and {kinds} kinds of members"))
+    }
+
+    /// Takes a field that ways and relations have alike, or that is not in the format.
+    fn tagged(&mut self, own: &mut Tagged, field: Field<'_>) -> Result<(), String> {
+        let Field { number, value } = field;
+        match number {
+            1 => (own.id, own.has_id) = (value.varint()?.cast_signed(), true),
+            2 => own.keys += self.text_numbers(own.kind, own.id, value)?,
+            3 => own.values += self.text_numbers(own.kind, own.id, value)?,
+            4 => self.message(value.bytes()?)?,
+            _ => self.spend(UNKNOWN_BYTES)?,
+        }
+        Ok(())
     }
 
     /// Changesets are not used, but the decoder reads them.
@@ -380,6 +375,35 @@ impl Audit {
 
     fn nano_deg(&self, axis: usize, steps: i64) -> Option<i64> {
         self.offsets[axis].checked_add(self.granularity.checked_mul(steps)?)
+    }
+}
+
+/// What ways and relations have alike.
+struct Tagged {
+    kind: &'static str,
+    id: i64,
+    has_id: bool,
+    keys: u64,
+    values: u64,
+}
+
+impl Tagged {
+    fn of(kind: &'static str) -> Self {
+        Self { kind, id: 0, has_id: false, keys: 0, values: 0 }
+    }
+
+    /// Returns the id.
+    fn check(&self) -> Result<i64, String> {
+        let &Self { kind, id, has_id, keys, values } = self;
+        if !has_id {
+            Err(format!("a {kind} {INCOMPLETE}: its id"))
+        } else if keys != values {
+            Err(format!("{kind} {id} has {keys} keys and {values} values"))
+        } else if keys > MAX_TAGS {
+            Err(format!("{kind} {id} has {keys} tags"))
+        } else {
+            Ok(id)
+        }
     }
 }
 

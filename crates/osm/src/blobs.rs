@@ -14,6 +14,7 @@ use crate::{
     audit::audit,
     blob::{BlobHeader, BlobRefusal, MAX_BLOB_BYTES, MAX_BLOB_HEADER_BYTES, decoder_blob, unpack},
     block::Block,
+    failed::Failed,
     formats::{START_BYTES, other_format},
 };
 
@@ -239,11 +240,6 @@ impl<R: Read + Seek> BlobFile<R> {
         self.data.get(number).map_or(0, |part| part.blob_bytes)
     }
 
-    /// Size of the data blobs with these numbers, packed.
-    pub(crate) fn bytes_of(&self, numbers: &[usize]) -> u64 {
-        numbers.iter().map(|&number| self.data[number].blob_bytes).sum()
-    }
-
     /// Unpacks and checks the data blobs with these numbers in parallel and hands on what `scan` makes of each block, in their
     /// order. `scan` is told how many bytes it may find, and fails beyond.
     ///
@@ -254,8 +250,8 @@ impl<R: Read + Seek> BlobFile<R> {
         numbers: &[usize],
         decoding: &Decoding<'_>,
         scan: impl Fn(Vec<u8>, u64) -> Result<T, BlobRefusal> + Sync,
-        mut take: impl FnMut(usize, T) -> Result<(), ReadOsmError>,
-    ) -> Result<(), ReadOsmError> {
+        mut take: impl FnMut(usize, T) -> Result<(), Failed>,
+    ) -> Result<(), Failed> {
         const BLOBS_PER_THREAD: usize = 4;
         let pool = decoding.pool;
         let scan =

@@ -6,6 +6,7 @@
 use std::{cell::OnceCell, ops::ControlFlow};
 
 use crate::{
+    location::{Location, location_from_nano},
     object_info::{Info, to_version},
     packed::Packed,
     wire::{self, Value, zigzag},
@@ -97,23 +98,25 @@ impl<'a> Block<'a> {
         parts(self.texts, 1).collect()
     }
 
+    /// The numbers of the fields with its objects, which say of what kind these are.
+    fn kinds(&self) -> impl Iterator<Item = u32> {
+        self.groups.iter().flat_map(|group| wire::fields(group)).flatten().map(|field| field.number)
+    }
+
     /// Whether there is something else than nodes in it.
     pub(crate) fn has_others_than_nodes(&self) -> bool {
-        let mut fields = self.groups.iter().flat_map(|group| wire::fields(group)).flatten();
-        fields.any(|field| !matches!(field.number, 1 | 2))
+        self.kinds().any(|kind| !matches!(kind, 1 | 2))
     }
 
     /// Whether there is a relation in it.
     pub(crate) fn has_relations(&self) -> bool {
-        let mut fields = self.groups.iter().flat_map(|group| wire::fields(group)).flatten();
-        fields.any(|field| field.number == 4)
+        self.kinds().any(|kind| kind == 4)
     }
 
     /// Whether there are ways in it, and nothing else.
     pub(crate) fn has_ways_alone(&self) -> bool {
-        let mut fields = self.groups.iter().flat_map(|group| wire::fields(group)).flatten();
-        fields.next().is_some_and(|first| first.number == 3)
-            && fields.all(|field| field.number == 3)
+        let mut kinds = self.kinds();
+        kinds.next() == Some(3) && kinds.all(|kind| kind == 3)
     }
 
     /// How many nodes there are.
@@ -241,10 +244,15 @@ impl<'b, 'a> BlockWay<'b, 'a> {
         self.refs.sums()
     }
 
-    /// Longitude and latitude of each node, nanodegrees; none in most files.
-    pub(crate) fn places_nano_deg(&self) -> impl Iterator<Item = [i64; 2]> {
+    /// Makes a list of its nodes, and adds to another one where they lie, if the way says so: in most files none does.
+    pub(crate) fn take_nodes(&self, ids: &mut Vec<i64>, located: &mut Vec<(i64, Location)>) {
+        ids.clear();
+        ids.extend(self.refs());
+        // The block was checked: one place for each node, or none at all.
         let [lats, lons] = self.places.each_ref().map(Packed::sums);
-        lons.zip(lats).map(|(lon, lat)| [self.block.nano_deg(1, lon), self.block.nano_deg(0, lat)])
+        located.extend(ids.iter().copied().zip(lons.zip(lats).map(|(lon, lat)| {
+            location_from_nano(self.block.nano_deg(1, lon), self.block.nano_deg(0, lat))
+        })));
     }
 }
 

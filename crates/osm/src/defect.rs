@@ -162,11 +162,6 @@ pub enum Defect {
     },
 }
 
-/// See [`Defect::reason`].
-const MISSING_WAYS: &str = "missing ways of an area";
-const MENDED_OUTLINE: &str = "mended outline of an area";
-const OPEN_COASTLINE: &str = "open end of a coastline";
-
 impl Defect {
     /// What kind of defect it is, in words: the name to count it under.
     #[must_use]
@@ -192,9 +187,9 @@ impl Defect {
             Self::ConflictingNode { .. } => "conflicting node",
             Self::LostArea { loss, .. } => loss.reason(),
             Self::LostLine { layer, loss, .. } => loss.reason(*layer),
-            Self::MissingWays { .. } => MISSING_WAYS,
-            Self::MendedOutline { .. } => MENDED_OUTLINE,
-            Self::OpenCoastline { .. } => OPEN_COASTLINE,
+            Self::MissingWays { .. } => "missing ways of an area",
+            Self::MendedOutline { .. } => "mended outline of an area",
+            Self::OpenCoastline { .. } => "open end of a coastline",
         }
     }
 
@@ -250,19 +245,7 @@ impl Defect {
             | Self::SelfCrossing { crossings: count, .. }
             | Self::MissingWays { ways: count, .. }
             | Self::MendedOutline { segments: count, .. } => Some(count),
-            Self::UnknownHighway { .. }
-            | Self::TagTakenOtherwise { .. }
-            | Self::Area { .. }
-            | Self::DuplicateWay { .. }
-            | Self::DamagedText { .. }
-            | Self::LongText { .. }
-            | Self::NoLine { .. }
-            | Self::ToAndFro { .. }
-            | Self::ConflictingWay { .. }
-            | Self::ConflictingNode { .. }
-            | Self::OpenCoastline { .. }
-            | Self::LostLine { .. }
-            | Self::LostArea { .. } => None,
+            _ => None,
         }
     }
 
@@ -274,21 +257,5 @@ impl Defect {
             Self::TagTakenOtherwise { tag, .. } => Some(tag),
             _ => None,
         }
-    }
-
-    /// Whether the whole way is left out for it, rather than a part of it, or nothing.
-    ///
-    /// Each way that [`crate::LeftOut`] counts as unknown, area, duplicate or without line has exactly one such defect.
-    #[must_use]
-    pub const fn is_loss_of_way(&self) -> bool {
-        matches!(
-            self,
-            Self::UnknownHighway { .. }
-                | Self::Area { .. }
-                | Self::DuplicateWay { .. }
-                | Self::TooFewNodes { .. }
-                | Self::NoLine { .. }
-                | Self::ToAndFro { .. }
-        )
     }
 }

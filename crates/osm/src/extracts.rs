@@ -11,8 +11,10 @@ use crate::{
     blob::BlobRefusal,
     blobs::{BlobFile, Decoding, Header},
     block::Block,
+    failed::Failed,
     open_file::{Extract, open_file},
     read_request::ReadRequest,
+    reading::Reading,
 };
 
 /// One extract or several, whose framing and headers have been checked.
@@ -92,11 +94,12 @@ impl<R: Read + Seek> Extracts<R> {
     /// another.
     pub(crate) fn for_each_block<T: Send>(
         &mut self,
+        reading: &Reading<'_>,
         numbers: &[usize],
-        decoding: &Decoding<'_>,
+        on_bytes: &dyn Fn(u64),
         scan: impl Fn(Vec<u8>, u64) -> Result<T, BlobRefusal> + Sync,
-        mut take: impl FnMut([usize; 2], T) -> Result<(), ReadOsmError>,
-    ) -> Result<(), ReadOsmError> {
+        mut take: impl FnMut([usize; 2], T) -> Result<(), Failed>,
+    ) -> Result<(), Failed> {
         let mut rest = numbers;
         let mut done_bytes = 0;
         while let Some(&first) = rest.first() {
@@ -108,12 +111,15 @@ impl<R: Read + Seek> Extracts<R> {
             let (own, later) = rest.split_at(count);
             let own: Vec<usize> = own.iter().map(|number| number - start).collect();
             let before = done_bytes;
-            let of_file =
-                Decoding { on_bytes: &|bytes| (decoding.on_bytes)(before + bytes), ..*decoding };
-            self.files[file].for_each_block(&own, &of_file, &scan, |number, found| {
+            let decoding = Decoding {
+                pool: reading.request.pool,
+                should_stop: reading.should_stop,
+                on_bytes: &|bytes| on_bytes(before + bytes),
+            };
+            self.files[file].for_each_block(&own, &decoding, &scan, |number, found| {
                 take([file, start + number], found)
             })?;
-            done_bytes += self.files[file].bytes_of(&own);
+            done_bytes += self.bytes_of(&rest[..count]);
             rest = later;
         }
         Ok(())

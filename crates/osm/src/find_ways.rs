@@ -1,15 +1,15 @@
 //! Pass 1: the ways of a file, or of some of its blobs, and where nodes are.
 
-use std::io::{Read, Seek};
+use std::io::{self, Read, Seek};
 
 use corniche_roads::FrcTable;
 use corniche_store::Sorter;
 
 use crate::{
-    Defect, ExtractSummary, ReadOsmError,
-    blobs::Decoding,
+    Defect, ExtractSummary,
     block::Block,
     extracts::{Extracts, TOO_MUCH_FOUND},
+    failed::Failed,
     location::Location,
     looked::{Looked, LookedAt, check_held},
     outlines::{
@@ -18,7 +18,7 @@ use crate::{
         wanted::Wanted,
     },
     reading::{Reading, Step},
-    records::{Located, WayRecord, age},
+    records::{Located, WayRecord},
     search::Search,
     ways::{Counted, Judge, Ways, add_summary},
 };
@@ -127,20 +127,16 @@ impl<'a> FoundWays<'a> {
         wanted: &WaysWanted<'_>,
         outlines: &mut [Outlines<'a>],
         on_defect: &mut dyn FnMut(Defect),
-    ) -> Result<(), ReadOsmError> {
+    ) -> Result<(), Failed> {
         let [before, all_bytes] = wanted.bytes;
-        let decoding = Decoding {
-            pool: reading.request.pool,
-            should_stop: reading.should_stop,
-            on_bytes: &|bytes| reading.tell(Step::Ways, before + bytes, all_bytes),
-        };
+        let on_bytes = &|bytes| reading.tell(Step::Ways, before + bytes, all_bytes);
         let counted = if reading.is_of_several() { Counted::ByWay } else { Counted::ByBlock };
         let of_outlines: Vec<_> = outlines.iter().map(|outlines| outlines.wanted).collect();
         let scan = |block: Vec<u8>, most_bytes| {
             let how = (of_outlines.as_slice(), counted);
             Ok(OfBlock::scan(&block, wanted, how, most_bytes).ok_or(TOO_MUCH_FOUND)?)
         };
-        file.for_each_block(numbers, &decoding, scan, |place, of_block| {
+        file.for_each_block(reading, numbers, on_bytes, scan, |place, of_block| {
             let [file, _] = place;
             if let Some(looked) = of_block.looked {
                 self.looked_at.take(reading, place, looked)?;
@@ -151,7 +147,7 @@ impl<'a> FoundWays<'a> {
             for (layer, (outlines, mut own)) in
                 (0..).zip(outlines.iter_mut().zip(of_block.outlines))
             {
-                self.take_located(reading, layer, std::mem::take(&mut own.located))?;
+                self.take_located(layer, std::mem::take(&mut own.located))?;
                 outlines.take(reading, file as u32, own, false)?;
             }
             Ok(())
@@ -164,32 +160,24 @@ impl<'a> FoundWays<'a> {
         [file, layer]: [u32; 2],
         of_block: Ways,
         on_defect: &mut dyn FnMut(Defect),
-    ) -> Result<(), ReadOsmError> {
+    ) -> Result<(), Failed> {
         self.held_bytes += of_block.held_bytes;
         check_held(reading, self.held_bytes)?;
         self.nodes_named += of_block.nodes_named;
         of_block.defects.into_iter().for_each(&mut *on_defect);
         add_summary(&mut self.summary, of_block.summary);
         for mut way in of_block.roads {
-            way.order = self.roads_count;
-            way.file = file;
-            way.age = if reading.is_of_several() { age(way.version) } else { 0 };
-            self.roads_count += 1;
-            self.ways.push(way).map_err(|error| reading.scratch_failed(error))?;
+            way.origin.place(reading, file, &mut self.roads_count);
+            self.ways.push(way)?;
         }
-        self.take_located(reading, layer as u8, of_block.located)
+        Ok(self.take_located(layer as u8, of_block.located)?)
     }
 
-    fn take_located(
-        &mut self,
-        reading: &Reading<'_>,
-        layer: u8,
-        located: Vec<(i64, Location)>,
-    ) -> Result<(), ReadOsmError> {
+    fn take_located(&mut self, layer: u8, located: Vec<(i64, Location)>) -> io::Result<()> {
         for (node_id, location) in located {
             let located = Located { node_id, order: self.located_count, location, layer };
             self.located_count += 1;
-            self.located.push(located).map_err(|error| reading.scratch_failed(error))?;
+            self.located.push(located)?;
         }
         Ok(())
     }

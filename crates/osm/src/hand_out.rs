@@ -1,6 +1,6 @@
 //! Puts ways and the places of their nodes together, and makes roads of them.
 
-use std::ops::Range;
+use std::{io, ops::Range};
 
 use corniche_roads::Road;
 use corniche_store::Sorted;
@@ -10,14 +10,15 @@ use crate::{
     Defect, ExtractSummary, ReadOsmError,
     assemble::{Assembled, PlainWay, assemble},
     deferred::Deferred,
+    failed::Failed,
     layer_sink::LayerSink,
     locate_nodes::LocatedNodes,
+    number_nodes::take_numbered,
     read_request::Placing,
     reading::Reading,
     records::Stop,
     spool::{SpoolReader, damaged},
     way_bytes::{take_node_ids, take_way},
-    wire::{varint, zigzag},
 };
 
 const WAYS_PER_TASK: usize = 256;
@@ -37,17 +38,16 @@ pub(crate) struct RoadWays<'a> {
 impl<'a> RoadWays<'a> {
     /// Ways, how many there are and how many more have the id of another one, with the places of their nodes.
     pub(crate) fn of(
-        reading: &Reading<'_>,
         (ways, ways_count, duplicates): (SpoolReader<'a>, u64, u64),
         nodes: LocatedNodes<'a>,
         mut summary: ExtractSummary,
         defects: Deferred<'a>,
-    ) -> Result<Self, ReadOsmError> {
+    ) -> io::Result<Self> {
         let LocatedNodes { stops, needed, missing, lengths } = nodes;
         summary.left_out_ways = lengths;
         summary.left_out.duplicate = duplicates;
         (summary.nodes_needed, summary.nodes_missing) = (needed, missing);
-        let stops = stops.finish().map_err(|error| reading.scratch_failed(error))?;
+        let stops = stops.finish()?;
         Ok(Self { ways, ways_count, stops, summary, defects })
     }
 }
@@ -58,10 +58,10 @@ pub(crate) fn hand_out_roads(
     found: RoadWays<'_>,
     sink: &mut dyn LayerSink<Road, ExtractSummary>,
     on_defect: &mut dyn FnMut(Defect),
-) -> Result<(), ReadOsmError> {
+) -> Result<(), Failed> {
     let RoadWays { mut ways, ways_count, mut stops, mut summary, defects } = found;
     sink.begin();
-    defects.tell(on_defect).map_err(|error| reading.scratch_failed(error))?;
+    defects.tell(on_defect)?;
     let take = |assembled: Assembled, sink: &mut dyn LayerSink<Road, ExtractSummary>| {
         if let Some((reason, highway, length_um)) = assembled.left_out {
             let own = summary.left_out_ways.entry((reason, highway)).or_default();
@@ -89,12 +89,12 @@ fn hand_out(
     stops: &mut Sorted<'_, Stop>,
     sink: &mut dyn LayerSink<Road, ExtractSummary>,
     mut take: impl FnMut(Assembled, &mut dyn LayerSink<Road, ExtractSummary>),
-) -> Result<(), ReadOsmError> {
+) -> Result<(), Failed> {
     let pool = reading.request.pool;
     let placing = reading.request.placing();
     let with_ids = reading.request.node_ids;
     let mut done = 0;
-    let mut next = || Batch::read(reading, ways, stops, pool.current_num_threads());
+    let mut next = || Batch::read(ways, stops, pool.current_num_threads());
     let mut batch = next()?;
     let mut before: Vec<Vec<Assembled>> = Vec::new();
     while !(batch.ways.is_empty() && before.is_empty()) {
@@ -109,8 +109,10 @@ fn hand_out(
             before.drain(..).flatten().for_each(|assembled| take(assembled, sink));
             following
         });
-        let results: Result<Vec<_>, HandOutError> = assembled.into_iter().collect();
-        before = results.map_err(|error| error.of(reading))?;
+        let made = |some: Option<Result<_, _>>| -> Result<Vec<Assembled>, Failed> {
+            Ok(some.ok_or_else(damaged)??)
+        };
+        before = assembled.into_iter().map(made).collect::<Result<_, _>>()?;
         done += batch.ways.len() as u64;
         sink.reached(done, ways_count);
         batch = following?;
@@ -134,48 +136,28 @@ struct PackedWay {
     stops: Range<usize>,
 }
 
-enum HandOutError {
-    Damaged,
-    Osm(ReadOsmError),
-}
-
-impl HandOutError {
-    fn of(self, reading: &Reading<'_>) -> ReadOsmError {
-        match self {
-            Self::Damaged => reading.scratch_failed(damaged()),
-            Self::Osm(error) => error,
-        }
-    }
-}
-
 impl Batch {
     fn read(
-        reading: &Reading<'_>,
         ways: &mut SpoolReader<'_>,
         stops: &mut Sorted<'_, Stop>,
         threads: usize,
-    ) -> Result<Self, ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
+    ) -> io::Result<Self> {
         let mut batch = Self::default();
         while batch.ways.len() < threads * WAYS_PER_TASK * TASKS_PER_THREAD
             && batch.stops.len() < threads * STOPS_PER_THREAD
         {
             let kinds = &mut batch.kinds;
             let way = ways.next(|bytes| {
-                let way_id = zigzag(varint(bytes).ok()?);
-                let nodes = varint(bytes).ok()?;
-                let length = varint(bytes).ok()?.try_into().ok()?;
-                let (kind, rest) = bytes.split_at_checked(length)?;
-                *bytes = rest;
+                let (way_id, nodes, kind) = take_numbered(bytes)?;
                 let first = kinds.len();
                 kinds.extend(kind);
                 Some((way_id, nodes, first..kinds.len()))
             });
-            let Some((way_id, nodes, kind)) = way.map_err(failed)? else { break };
+            let Some((way_id, nodes, kind)) = way? else { break };
             let first = batch.stops.len();
             for _ in 0..nodes {
-                let stop = stops.next().ok_or_else(damaged).map_err(failed)?;
-                batch.stops.push(stop.map_err(failed)?);
+                let stop = stops.next().ok_or_else(damaged)?;
+                batch.stops.push(stop?);
             }
             let stops = first..batch.stops.len();
             batch.ways.push(PackedWay { way_id, kind, stops });
@@ -183,12 +165,13 @@ impl Batch {
         Ok(batch)
     }
 
+    /// `None` if what is kept of the ways is damaged.
     fn assemble(
         &self,
         some: &[PackedWay],
         with_ids: bool,
         placing: Placing<'_>,
-    ) -> Result<Vec<Assembled>, HandOutError> {
+    ) -> Option<Result<Vec<Assembled>, ReadOsmError>> {
         let plain = |way: &PackedWay| {
             let mut bytes = &self.kinds[way.kind.clone()];
             let mut node_ids = Vec::new();
@@ -202,8 +185,7 @@ impl Batch {
             let kind = take_way(&mut bytes)?;
             Some(PlainWay { way_id: way.way_id, kind, node_ids, stops: way.stops.clone() })
         };
-        let ways: Option<Vec<PlainWay>> = some.iter().map(plain).collect();
-        assemble(ways.ok_or(HandOutError::Damaged)?, &self.stops, placing)
-            .map_err(HandOutError::Osm)
+        let ways = some.iter().map(plain).collect::<Option<_>>()?;
+        Some(assemble(ways, &self.stops, placing))
     }
 }

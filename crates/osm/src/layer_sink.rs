@@ -22,30 +22,3 @@ pub trait LayerSink<T, S> {
     /// All objects of this layer were handed out.
     fn end(&mut self, summary: S);
 }
-
-/// Hands a layer of which all objects go to one function.
-pub(crate) struct Only<'a, T, S> {
-    sink: &'a mut dyn FnMut(T),
-    summary: Option<S>,
-}
-
-impl<'a, T, S: Default> Only<'a, T, S> {
-    pub(crate) fn new(sink: &'a mut dyn FnMut(T)) -> Self {
-        Self { sink, summary: None }
-    }
-
-    /// What the layer holds, once it was handed out.
-    pub(crate) fn summary(self) -> S {
-        self.summary.unwrap_or_default()
-    }
-}
-
-impl<T, S> LayerSink<T, S> for Only<'_, T, S> {
-    fn take(&mut self, object: T) {
-        (self.sink)(object);
-    }
-
-    fn end(&mut self, summary: S) {
-        self.summary = Some(summary);
-    }
-}

@@ -9,15 +9,16 @@ use corniche_store::Sorter;
 use rayon::prelude::*;
 
 use crate::{
-    LeftOutReason, LeftOutWays, ReadOsmError,
+    LeftOutReason, LeftOutWays,
     assemble::length_um,
+    failed::Failed,
     id_index::IdIndex,
     nodes::{NodeIds, NodePlaces},
     reading::Reading,
     records::SoughtId,
     spool::{Spool, damaged},
     way_bytes::{LeftOutWay, take_left_out, take_node_ids},
-    wire::{push_varint, varint},
+    wire::{push_bytes, take_bytes},
 };
 
 /// How many ways there are and how long they are, by reason and `highway` value.
@@ -26,7 +27,7 @@ pub(crate) type Lengths = BTreeMap<(LeftOutReason, String), LeftOutWays>;
 /// Ways that are left out, and the nodes that they name.
 pub(crate) struct LeftOutNodes<'a> {
     /// The length of a way's bytes, and these; see [`crate::way_bytes`].
-    ways: Spool<'a>,
+    pub(crate) ways: Spool<'a>,
     pub(crate) ids: Sorter<'a, SoughtId>,
     pub(crate) ids_count: u64,
 }
@@ -47,15 +48,7 @@ impl<'a> LeftOutNodes<'a> {
                 self.ids_count += 1;
             }
         }
-        self.ways.push(|bytes| {
-            push_varint(bytes, way.len() as u64);
-            bytes.extend(way);
-        })
-    }
-
-    /// The ways, and the ids of their nodes.
-    pub(crate) fn into_parts(self) -> (Spool<'a>, Sorter<'a, SoughtId>, u64) {
-        (self.ways, self.ids, self.ids_count)
+        self.ways.push(|bytes| push_bytes(bytes, way))
     }
 }
 
@@ -65,10 +58,9 @@ pub(crate) fn left_out_lengths(
     ways: Spool<'_>,
     ids: &NodeIds,
     places: &NodePlaces,
-) -> Result<Lengths, ReadOsmError> {
+) -> Result<Lengths, Failed> {
     const WAYS_PER_TASK: usize = 256;
     const BATCH_BYTES: usize = 1 << 20;
-    let failed = |error| reading.scratch_failed(error);
     let mut ways = ways.read();
     let mut lengths = Lengths::new();
     let index = IdIndex::new(ids.ids());
@@ -79,13 +71,11 @@ pub(crate) fn left_out_lengths(
         own.clear();
         while bytes.len() < BATCH_BYTES {
             let take = |page: &mut &[u8]| {
-                let length = varint(page).ok()?.try_into().ok()?;
-                let (way, rest) = page.split_at_checked(length)?;
-                *page = rest;
-                bytes.extend(way);
-                Some(bytes.len() - length..bytes.len())
+                let first = bytes.len();
+                bytes.extend(take_bytes(page)?);
+                Some(first..bytes.len())
             };
-            let Some(way) = ways.next(take).map_err(failed)? else { break };
+            let Some(way) = ways.next(take)? else { break };
             own.push(way);
         }
         if own.is_empty() {
@@ -96,7 +86,7 @@ pub(crate) fn left_out_lengths(
             tasks.map(|some| add_up(some, &bytes, &index, places)).collect()
         });
         for found in found {
-            for ((reason, highway), found) in found.ok_or_else(damaged).map_err(failed)? {
+            for ((reason, highway), found) in found.ok_or_else(damaged)? {
                 let all = lengths.entry((reason, highway.to_owned())).or_default();
                 all.ways += found.ways;
                 all.length_um += found.length_um;

@@ -9,11 +9,11 @@ use std::io::{self, Read, Seek};
 use corniche_store::{Sorted, Sorter};
 
 use crate::{
-    Defect, ReadOsmError,
+    Defect,
     ahead::Ahead,
-    blobs::Decoding,
     block::Block,
     extracts::{Extracts, TOO_MUCH_FOUND},
+    failed::Failed,
     id_range::IdRange,
     left_out_lengths::{LeftOutNodes, Lengths, left_out_lengths},
     looked::NodeBlob,
@@ -85,7 +85,7 @@ pub(crate) trait NodeSource {
         ids: &NodeIds,
         share: &ShareOfNodes,
         places: &mut NodePlaces,
-    ) -> Result<(), ReadOsmError>;
+    ) -> Result<(), Failed>;
 }
 
 /// Finds the places of all nodes that the layers name, and answers each of them. `located` are places that ways give, in order of node id.
@@ -96,7 +96,7 @@ pub(crate) fn locate_nodes<'a>(
     questions: Vec<NodeQuestions<'a>>,
     located: impl Iterator<Item = io::Result<Located>>,
     on_defect: &mut dyn FnMut(usize, Defect),
-) -> Result<Vec<LocatedNodes<'a>>, ReadOsmError> {
+) -> Result<Vec<LocatedNodes<'a>>, Failed> {
     let stops_bytes = reading.shares().stops;
     let none = || LocatedNodes {
         stops: reading.sorter(stops_bytes),
@@ -110,10 +110,10 @@ pub(crate) fn locate_nodes<'a>(
     for NodeQuestions { mentions, mentions_count, left_out: apart } in questions {
         let (mut ways, mut also) = (None, None);
         if let Some(apart) = apart {
-            let (own, ids, count) = apart.into_parts();
+            let LeftOutNodes { ways: own, ids, ids_count } = apart;
             ways = Some(own);
-            also = Some(Ahead::new(ids.finish().map_err(|error| reading.scratch_failed(error))?));
-            all += count;
+            also = Some(Ahead::new(ids.finish()?));
+            all += ids_count;
         }
         all += mentions_count;
         left_out.push(ways);
@@ -194,17 +194,12 @@ pub(crate) fn read_places<R: Read + Seek>(
     ids: &NodeIds,
     on_bytes: &dyn Fn(u64, u64),
     take: &mut dyn FnMut(FoundNode),
-) -> Result<u64, ReadOsmError> {
+) -> Result<u64, Failed> {
     let (Some(&least), Some(&most)) = (ids.ids().first(), ids.ids().last()) else { return Ok(0) };
     let own = IdRange { least, most };
     let numbers: Vec<usize> =
         node_blobs.iter().filter(|blob| blob.ids.meets(own)).map(|blob| blob.number).collect();
     let all_bytes = file.bytes_of(&numbers);
-    let decoding = Decoding {
-        pool: reading.request.pool,
-        should_stop: reading.should_stop,
-        on_bytes: &|bytes| on_bytes(bytes, all_bytes),
-    };
     let take = |_, found: Vec<FoundNode>| {
         found.into_iter().for_each(&mut *take);
         Ok(())
@@ -212,7 +207,7 @@ pub(crate) fn read_places<R: Read + Seek>(
     let scan = |block: Vec<u8>, most_bytes| {
         Ok(ids.scan(&Block::new(&block), most_bytes).ok_or(TOO_MUCH_FOUND)?)
     };
-    file.for_each_block(&numbers, &decoding, scan, take)?;
+    file.for_each_block(reading, &numbers, &|bytes| on_bytes(bytes, all_bytes), scan, take)?;
     Ok(all_bytes)
 }
 
@@ -278,8 +273,7 @@ impl<'a> Chunk<'a> {
         reading: &Reading<'a>,
         asking: &mut [Asking<'a>],
         most: u64,
-    ) -> Result<Option<Self>, ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
+    ) -> Result<Option<Self>, Failed> {
         let most_ids = most_ids(reading, asking.len() as u64).min(most) as usize;
         // Of this size at once: lists that grow by doubling would take up to three times as much.
         let mut ids: Vec<i64> = Vec::with_capacity(most_ids);
@@ -289,13 +283,13 @@ impl<'a> Chunk<'a> {
         while ids.len() < most_ids {
             let mut next: Option<i64> = None;
             for own in &mut *asking {
-                next = next.into_iter().chain(own.next().map_err(failed)?).min();
+                next = next.into_iter().chain(own.next()?).min();
             }
             let Some(id) = next else { break };
             for (asked, Asking { mentions, also }) in layers.iter_mut().zip(&mut *asking) {
                 asked.take(reading, id, ids.len() as u64, mentions, &mut count)?;
                 while let Some(also) = also
-                    && also.peek().map_err(failed)? == Some(&SoughtId(id))
+                    && also.peek()? == Some(&SoughtId(id))
                 {
                     also.take();
                     reading.check_stop_at(count)?;
@@ -315,10 +309,10 @@ impl<'a> Chunk<'a> {
         reading: &Reading<'_>,
         located: &mut Ahead<impl Iterator<Item = io::Result<Located>>>,
         places: &NodePlaces,
-    ) -> Result<Vec<Option<NodePlaces>>, ReadOsmError> {
+    ) -> Result<Vec<Option<NodePlaces>>, Failed> {
         let mut by_layer: Vec<Option<NodePlaces>> = self.layers.iter().map(|_| None).collect();
         let mut count = 0;
-        while let Some(next) = located.peek().map_err(|error| reading.scratch_failed(error))? {
+        while let Some(next) = located.peek()? {
             if self.ids.ids().last().is_some_and(|&last| next.node_id > last) {
                 break;
             }
@@ -350,11 +344,10 @@ impl<'a> Asked<'a> {
         number: u64,
         mentions: &mut Ahead<Sorted<'a, Mention>>,
         count: &mut u64,
-    ) -> Result<(), ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
+    ) -> Result<(), Failed> {
         let mut named = Named::default();
         let mut is_first = true;
-        while let Some(mention) = mentions.peek().map_err(failed)? {
+        while let Some(mention) = mentions.peek()? {
             if mention.node_id != id {
                 break;
             }
@@ -366,7 +359,7 @@ impl<'a> Asked<'a> {
                     push_varint(bytes, number - self.last);
                 }
             };
-            self.visits.push(push).map_err(failed)?;
+            self.visits.push(push)?;
             self.last = number;
             is_first = false;
             mentions.take();
@@ -384,8 +377,7 @@ impl<'a> Asked<'a> {
         reading: &Reading<'_>,
         places: &NodePlaces,
         stops: &mut Sorter<'_, Stop>,
-    ) -> Result<(), ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
+    ) -> Result<(), Failed> {
         let mut visits = self.visits.read();
         let mut node = 0;
         for count in 0..self.mentions_count {
@@ -395,12 +387,12 @@ impl<'a> Asked<'a> {
                 let after = if visit & 1 == 1 { varint(bytes).ok()? } else { 0 };
                 Some((visit, usize::try_from(after).ok()?))
             };
-            let visit = visits.next(visit).map_err(failed)?;
-            let (visit, after) = visit.ok_or_else(damaged).map_err(failed)?;
+            let visit = visits.next(visit)?;
+            let (visit, after) = visit.ok_or_else(damaged)?;
             node += after;
-            let named = self.named.get(node).ok_or_else(damaged).map_err(failed)?;
+            let named = self.named.get(node).ok_or_else(damaged)?;
             let stop = Stop::new(visit >> 1, named.is_junction(), places.location(node));
-            stops.push(stop).map_err(failed)?;
+            stops.push(stop)?;
         }
         Ok(())
     }

@@ -6,6 +6,7 @@ use corniche_store::Sorter;
 
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
+    failed::Failed,
     left_out_lengths::LeftOutNodes,
     reading::Reading,
     records::{Mention, WayRecord, WayUse},
@@ -14,7 +15,7 @@ use crate::{
     way_bytes::{is_carrier, is_left_out, take_node_ids},
     way_facts::WayFacts,
     ways::add_summary,
-    wire::{push_varint, to_zigzag},
+    wire::{push_bytes, push_signed, push_varint, take_bytes, take_number, take_signed},
 };
 
 /// What is left of the ways, and the nodes that they name.
@@ -44,9 +45,8 @@ pub(crate) fn number_nodes<'a>(
     summary: &mut ExtractSummary,
     on_defect: &mut dyn FnMut(Defect),
     left_out: Option<LeftOutNodes<'a>>,
-) -> Result<NumberedNodes<'a>, ReadOsmError> {
+) -> Result<NumberedNodes<'a>, Failed> {
     let (request, shares) = (reading.request, reading.shares());
-    let failed = |error| reading.scratch_failed(error);
     let mut numbered = NumberedNodes {
         ways: Spool::new(request.scratch, shares.spool),
         mentions: reading.sorter(shares.mentions),
@@ -60,7 +60,7 @@ pub(crate) fn number_nodes<'a>(
     let mut node_ids = Vec::new();
     for (count, way) in (0..).zip(ways) {
         reading.check_stop_at(count)?;
-        let way = way.map_err(failed)?;
+        let way = way?;
         // Without several extracts nothing is counted by way.
         if !way.facts.is_empty() {
             if let Some(newest) = newest.as_mut().filter(|newest| newest.way.way_id == way.way_id) {
@@ -70,11 +70,11 @@ pub(crate) fn number_nodes<'a>(
             } else {
                 newest = Some(Newest::of(&way));
             }
-            let facts = WayFacts::of_bytes(&way.facts).map_err(failed)?;
-            add_summary(summary, facts.counts.into());
+            let facts = WayFacts::of_bytes(&way.facts)?;
+            add_summary(summary, facts.counts);
             facts.defects.into_iter().for_each(&mut *on_defect);
         }
-        let kind = way.take_apart(&mut node_ids).map_err(failed)?;
+        let kind = way.take_apart(&mut node_ids)?;
         // Where ids are wanted, they stay before what the way is.
         let kept = if request.node_ids { &*way.bytes } else { kind };
         if is_left_out(kind) {
@@ -86,18 +86,18 @@ pub(crate) fn number_nodes<'a>(
                     let used = if carries { WayUse::Carrier } else { WayUse::Length };
                     numbered.add(way.way_id, &node_ids, used, kept)
                 }
-            }
-            .map_err(failed)?;
+            }?;
             continue;
         }
-        let version = known_version(way.version);
+        let version = known_version(way.origin.version);
         match &mut last {
             Some((way_id, first)) if *way_id == way.way_id => {
                 if let (Some(first), Some(second)) = (*first, version)
                     && first != second
                 {
                     let reason = two_versions("way", way.way_id, [first, second]);
-                    return Err(ReadOsmError::History { path: request.extract(way.file), reason });
+                    let path = request.extract(way.origin.file);
+                    return Err(ReadOsmError::History { path, reason }.into());
                 }
                 *first = first.or(version);
                 numbered.duplicates += 1;
@@ -105,7 +105,7 @@ pub(crate) fn number_nodes<'a>(
             }
             _ => {
                 last = Some((way.way_id, version));
-                numbered.add(way.way_id, &node_ids, WayUse::Road, kept).map_err(failed)?;
+                numbered.add(way.way_id, &node_ids, WayUse::Road, kept)?;
             }
         }
     }
@@ -120,17 +120,16 @@ struct Newest {
 
 impl Newest {
     fn of(way: &WayRecord) -> Self {
-        let &WayRecord { way_id, age, order, version, file, .. } = way;
-        let bytes = way.bytes.clone();
-        let way = WayRecord { way_id, age, order, version, file, bytes, facts: Box::default() };
+        let &WayRecord { way_id, origin, ref bytes, .. } = way;
+        let way = WayRecord { way_id, origin, bytes: bytes.clone(), facts: Box::default() };
         Self { way, is_told: false }
     }
 
     /// Whether another record of the way is that of another extract, and so does not count. Tells once if it differs.
     fn is_instead_of(&mut self, other: &WayRecord, on_defect: &mut dyn FnMut(Defect)) -> bool {
         let Self { way, is_told } = self;
-        let is_of_other = other.file != way.file;
-        let differs = (other.version, &other.bytes) != (way.version, &way.bytes);
+        let is_of_other = other.origin.file != way.origin.file;
+        let differs = (other.origin.version, &other.bytes) != (way.origin.version, &way.bytes);
         if is_of_other && differs && !*is_told {
             *is_told = true;
             on_defect(Defect::ConflictingWay { way_id: way.way_id });
@@ -164,10 +163,14 @@ impl NumberedNodes<'_> {
         }
         *ways_count += 1;
         ways.push(|bytes| {
-            push_varint(bytes, to_zigzag(way_id));
+            push_signed(bytes, way_id);
             push_varint(bytes, node_ids.len() as u64);
-            push_varint(bytes, kept.len() as u64);
-            bytes.extend(kept);
+            push_bytes(bytes, kept);
         })
     }
+}
+
+/// Takes a way of [`NumberedNodes`]: its id, how many nodes it has, and what stays of its bytes.
+pub(crate) fn take_numbered<'b>(bytes: &mut &'b [u8]) -> Option<(i64, usize, &'b [u8])> {
+    Some((take_signed(bytes)?, take_number(bytes)?, take_bytes(bytes)?))
 }

@@ -23,6 +23,7 @@ use crate::{
     blobs::BlobFile,
     deferred::Deferred,
     extracts::{BlobOrder, Extracts},
+    failed::Failed,
     find_ways::{FoundWays, WaysWanted},
     hand_out::{RoadWays, hand_out_roads},
     layers::Layers,
@@ -43,24 +44,71 @@ use crate::{
     sought_ids::SoughtIds,
 };
 
-/// Reads an extract once, and hands out all layers that are wanted, one after the other.
+/// Reads an extract once, and hands out all layers that are wanted, one after the other; each as [`Layers`] says, whatever other layers
+/// are wanted.
 ///
-/// Each layer is handed out as [`read_areas`](crate::read_areas), [`read_lines`](crate::read_lines) and [`read_roads`](crate::read_roads) do it, whatever other layers are wanted. `on_defect` is
-/// told what is wrong with a layer between its beginning and its end.
+/// What is wrong with a layer goes to `on_defect` between its beginning and its end, in an order that depends on the file alone, as what is
+/// handed out does.
 ///
-/// # Memory and limits
-/// As for [`read_roads`](crate::read_roads), all layers together; what may be kept of a file holds for each layer. Objects and their ways are sorted and joined as roads are; beside that a byte is held for
-/// each object that gives ways a class, and 16 bytes for each point of coastlines.
+/// With [`ReadRequest::others`], several extracts are read as one:
+/// - A node, or a way with a `highway` tag, that is in two of them counts once. Of two versions the newer one counts, else that of
+///   the extract named first. Ways that differ are a [`Defect::ConflictingWay`], nodes with different places a
+///   [`Defect::ConflictingNode`].
+/// - A way without a `highway` tag is not looked at, so it does not replace an older version that has one.
+/// - Each extract for itself must be none with several versions.
+///
+/// The file may be in any order, with nodes dense or plain, ids negative, blobs raw or zlib, locations in nodes or in ways
+/// (`LocationsOnWays`). An extract that is sorted by kind is read once: ways, then nodes, but for a few blobs among which the first way is
+/// sought. One that is not is read twice; if nodes come first and ways among them, blobs up to the first way are read once more, and
+/// scratch space is taken once more. If the needed nodes do not
+/// fit in a quarter of [`ReadRequest::memory_bytes`], at 18 bytes each, blobs with nodes are read anew for each part that fits: if they
+/// are sorted by id, those with nodes of that part alone, so each blob once more, and once more where a part ends within it.
+/// Areas and lines need relations, too: a sorted extract is read once, relations, ways, nodes; one that is not is read three times, for
+/// objects, for ways, for nodes. Where the ids of the ways that relations name do not fit in memory, blobs with ways are read once more for
+/// each part that fits. `should_stop` is asked every few blobs, and every 65 536 nodes or ways where these are sorted and joined.
+///
+/// # Memory
+/// Ways and nodes of all layers take about [`ReadRequest::memory_bytes`] at most; what does not fit is sorted and joined in
+/// [`ReadRequest::scratch`], where it takes some 30 bytes for each time that a road names a node, and once more as much for
+/// each time that the sorters must merge their runs in several steps. On top come
+/// - the blobs that are being decoded: see the limits;
+/// - a few thousand ways that are handed out, made or read at a time, 100 bytes for each of their nodes;
+/// - 48 bytes for each blob of the file, and the texts of the summary;
+/// - a byte for each object that gives ways a class, and 16 bytes for each point of coastlines.
+///
+/// # Limits
+/// These limits hold for every file, also for one that was made to do harm; what may be kept of a file holds for each layer:
+///
+/// | of | limit | beyond it |
+/// |---|---|---|
+/// | a blob header | 64 KiB | damaged |
+/// | a blob, packed and unpacked | 32 MiB, the format's own; 1 MiB for the file's header | damaged |
+/// | a block, decoded | 512 MiB | damaged |
+/// | what is found in a block | 256 MiB | damaged |
+/// | the ways, tags and node ids that are kept, in memory or in scratch space | 64 MiB and 64 times the size of the file; real extracts keep less than their own size | [`ReadOsmError::TooMuch`] |
+/// | a tag's text | 255 characters, OSM's own | cut, [`Defect::LongText`] |
+/// | tags of a way | 65 536 | damaged |
+/// | comparisons in search of a way's self-crossings | 2 million, enough for the 2000 nodes that OSM allows | not all are found |
+///
+/// Blocks of up to 16 MiB unpacked, 64 MiB decoded and 16 MiB found are decoded side by side; larger ones, which
+/// ordinary programs do not write, are decoded alone. So blobs take, together and beside what is kept, at most 256
+/// MiB and eight packed blobs per thread, and 1 GiB for one that is alone. A single way takes 100 bytes for each of its nodes, of
+/// which OSM allows 2000. In scratch space there is at most four times as much as is kept, for each step of the
+/// merging. Time, without that of reading an unsorted file anew, is proportional to the unpacked size, which deflate keeps below
+/// 1032 times that of the file.
 ///
 /// # Errors
-/// As for [`read_roads`](crate::read_roads). What was handed out before is to be forgotten then.
+/// When the file cannot be read, is no `.osm.pbf`, is cut off or damaged, is a history file (its header says so, it marks an
+/// object as deleted, or holds one in two versions, neighbours or roads), uses a feature or a
+/// compression that is not supported, or when `should_stop` says so. What was handed out before is to be forgotten then.
 pub fn read_extract(
     request: &ReadRequest<'_>,
     layers: Layers<'_>,
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<(), ReadOsmError> {
-    read_all(Extracts::open(request)?, request, layers, on_defect, should_stop)
+    let read = read_all(Extracts::open(request)?, request, layers, on_defect, should_stop);
+    read.map_err(|failed| failed.of(request.path))
 }
 
 /// Reads the layers of one extract from any source of bytes, as [`read_extract`] does from a file. `request.path` only names it in
@@ -77,7 +125,8 @@ pub fn read_extract_from<R: Read + Seek>(
 ) -> Result<(), ReadOsmError> {
     let request = ReadRequest { others: &[], ..*request };
     let file = BlobFile::open(request.path, source)?;
-    read_all(Extracts::of(vec![file]), &request, layers, on_defect, should_stop)
+    let read = read_all(Extracts::of(vec![file]), &request, layers, on_defect, should_stop);
+    read.map_err(|failed| failed.of(request.path))
 }
 
 fn read_all<R: Read + Seek>(
@@ -86,7 +135,7 @@ fn read_all<R: Read + Seek>(
     layers: Layers<'_>,
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
-) -> Result<(), ReadOsmError> {
+) -> Result<(), Failed> {
     let most = Cell::new(0);
     let told = |done: u64, all: u64| {
         // What is read once more is told once.
@@ -159,8 +208,7 @@ impl<'a> Found<'a> {
         file: &mut Extracts<R>,
         order: BlobOrder,
         wanted: &LayersWanted<'a>,
-    ) -> Result<Option<Self>, ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
+    ) -> Result<Option<Self>, Failed> {
         let mut outlines: Vec<Outlines<'_>> =
             wanted.outlines.iter().map(|&wanted| Outlines::new(reading, wanted)).collect();
         let mut of_roads = Deferred::new(reading.request.scratch, reading.shares().defects);
@@ -169,7 +217,6 @@ impl<'a> Found<'a> {
             return Ok(None);
         };
         let FoundWays { ways, located, mut summary, looked_at, nodes_named, .. } = found;
-        let looked_nodes = looked_at.nodes_seen;
 
         let (mut numbered, mut questions) = (Vec::new(), Vec::new());
         let mut objects = Vec::new();
@@ -179,7 +226,7 @@ impl<'a> Found<'a> {
             numbered.push(nodes);
         }
         if wanted.roads.is_some() {
-            let ways = ways.finish().map_err(failed)?;
+            let ways = ways.finish()?;
             let on_defect = &mut |defect| of_roads.push(&defect);
             let others: u64 =
                 numbered.iter().map(|own: &NumberedNodes<'_>| own.mentions_count).sum();
@@ -192,19 +239,12 @@ impl<'a> Found<'a> {
         for own in numbered {
             let NumberedNodes { ways, mentions, left_out, ways_count, mentions_count, duplicates } =
                 own;
-            let mentions = mentions.finish().map_err(failed)?;
+            let mentions = mentions.finish()?;
             questions.push(NodeQuestions { mentions, mentions_count, left_out });
             layers.push((ways.read(), ways_count, duplicates));
         }
-        let mut nodes = NodesLast {
-            file,
-            unread: order.nodes,
-            node_blobs: looked_at.node_blobs,
-            versions: looked_at.versions,
-            nodes_seen: 0,
-            is_out_of_order: false,
-        };
-        let located = located.finish().map_err(failed)?;
+        let mut nodes = NodesLast { file, unread: order.nodes, looked_at, is_out_of_order: false };
+        let located = located.finish()?;
         let answers =
             locate_nodes(reading, &mut nodes, questions, located, &mut |layer, defect| {
                 objects.get_mut(layer).map_or(&mut of_roads, |own| &mut own.defects).push(&defect);
@@ -212,17 +252,17 @@ impl<'a> Found<'a> {
         if nodes.is_out_of_order {
             return Ok(None);
         }
-        let nodes_seen = looked_nodes + nodes.nodes_seen;
+        let nodes_seen = nodes.looked_at.nodes_seen;
         let mut layers = layers.into_iter().zip(answers?);
         let mut found = Self { outlines: Vec::new(), roads: None };
         for own in objects {
             let Some(((ways, count, _), nodes)) = layers.next() else { break };
-            let stops = nodes.stops.finish().map_err(failed)?;
-            found.outlines.push((own, LocatedWays { ways, stops, count }));
+            let stops = nodes.stops.finish()?;
+            found.outlines.push((own, LocatedWays { ways, stops, count, last: None }));
         }
         if let Some((ways, nodes)) = layers.next() {
             summary.nodes_seen = nodes_seen;
-            found.roads = Some(RoadWays::of(reading, ways, nodes, summary, of_roads)?);
+            found.roads = Some(RoadWays::of(ways, nodes, summary, of_roads)?);
         }
         Ok(Some(found))
     }
@@ -236,7 +276,7 @@ fn read_ways<'a, R: Read + Seek>(
     wanted: &LayersWanted<'_>,
     outlines: &mut [Outlines<'a>],
     on_defect: &mut dyn FnMut(Defect),
-) -> Result<Option<FoundWays<'a>>, ReadOsmError> {
+) -> Result<Option<FoundWays<'a>>, Failed> {
     let mut found = FoundWays::new(reading);
     let end = if outlines.is_empty() { file.len() } else { order.relations };
     let [relations, ways]: [Vec<usize>; 2] =
@@ -249,7 +289,7 @@ fn read_ways<'a, R: Read + Seek>(
     let mut way_ids: Vec<SoughtIds<'_>> =
         outlines.iter_mut().map(|own| own.take_way_ids(reading)).collect::<Result<_, _>>()?;
     let most_ids = (reading.shares().way_ids / size_of::<i64>() as u64).max(1) as usize;
-    let mut next_ids = || -> Result<Vec<Vec<i64>>, ReadOsmError> {
+    let mut next_ids = || -> Result<Vec<Vec<i64>>, Failed> {
         way_ids.iter_mut().map(|ids| ids.next(reading, most_ids)).collect()
     };
     let rest_bytes = file.bytes_of(&before.with_ways);

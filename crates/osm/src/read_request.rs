@@ -1,9 +1,6 @@
 //! The request to read an extract: which file, which table, how much memory, and who is told of progress.
 
-use std::{
-    fmt,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use corniche_geom::{LatticePoint, Seam};
 use corniche_roads::FrcTable;
@@ -27,7 +24,7 @@ pub type OnProgress<'a> = dyn Fn(u64, u64) + 'a;
 pub struct ReadRequest<'a> {
     /// The extract, `.osm.pbf`.
     pub path: &'a Path,
-    /// Further extracts, read with the first as if they were one: see [`read_roads`](crate::read_roads).
+    /// Further extracts, read with the first as if they were one: see [`read_extract`](crate::read_extract).
     pub others: &'a [PathBuf],
     /// Which ways are roads.
     pub table: &'a FrcTable,
@@ -72,16 +69,5 @@ impl ReadRequest<'_> {
     pub(crate) fn extract(&self, number: u32) -> PathBuf {
         let further = (number as usize).checked_sub(1).and_then(|number| self.others.get(number));
         further.map_or(self.path, PathBuf::as_path).to_path_buf()
-    }
-}
-
-impl fmt::Debug for ReadRequest<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { path, others, memory_bytes, .. } = self;
-        f.debug_struct("ReadRequest")
-            .field("path", path)
-            .field("others", others)
-            .field("memory_bytes", memory_bytes)
-            .finish_non_exhaustive()
     }
 }

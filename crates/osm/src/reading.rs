@@ -1,10 +1,11 @@
 //! What every step of a reading needs.
 
-use std::io;
-
 use corniche_store::{SortRecord, Sorter};
 
-use crate::{ReadOsmError, kept_error::KeptError, nodes::Precedence, read_request::ReadRequest};
+use crate::{
+    ReadOsmError, failed::Failed, kept_error::KeptError, nodes::Precedence,
+    read_request::ReadRequest,
+};
 
 /// What takes of the memory, as a part of the whole. At no time is there more than the whole, in sixteenths, or where there are objects that
 /// ways outline, in twentieths:
@@ -141,12 +142,9 @@ impl<'a> Reading<'a> {
         if count.is_multiple_of(OFTEN) { self.check_stop() } else { Ok(()) }
     }
 
-    /// The scratch space failed, or what shares kept could not be read.
-    pub(crate) fn scratch_failed(&self, source: io::Error) -> ReadOsmError {
-        match source.downcast() {
-            Ok(kept) => self.kept_failed(kept),
-            Err(source) => ReadOsmError::Scratch { path: self.request.path.to_path_buf(), source },
-        }
+    /// A step failed: of which extract.
+    pub(crate) fn failed(&self, failed: impl Into<Failed>) -> ReadOsmError {
+        failed.into().of(self.request.path)
     }
 
     /// What shares keep could not be kept or read.

@@ -9,59 +9,82 @@ use corniche_store::SortRecord;
 
 use crate::{
     location::Location,
-    wire::{push_varint, to_zigzag, varint, zigzag},
+    reading::Reading,
+    versions::known_version,
+    wire::{
+        push_bytes, push_signed, push_varint, take_array, take_bytes, take_number, take_signed,
+    },
 };
 
 /// A way that a layer wants, as it stands in the file.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct WayRecord {
     pub(crate) way_id: i64,
-    /// Where an object may be in several extracts: [`age`]. Else 0.
-    pub(crate) age: u32,
-    /// How many of these come before it in the extracts.
-    pub(crate) order: u64,
-    /// 0 if it is not known.
-    pub(crate) version: i32,
-    /// Which extract it is from.
-    pub(crate) file: u32,
+    pub(crate) origin: Origin,
     /// Its nodes, then what it is: see [`crate::way_bytes`].
     pub(crate) bytes: Box<[u8]>,
     /// What is counted of it, where it may be in several extracts; see [`crate::way_facts`]. Else empty.
     pub(crate) facts: Box<[u8]>,
 }
 
-/// The smaller, the newer.
-pub(crate) fn age(version: i32) -> u32 {
-    i32::MAX.abs_diff(version)
+/// Which version of an object a record is, and where it stands. The newest comes first where an object may be in several extracts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Origin {
+    /// Where an object may be in several extracts: the smaller, the newer. Else 0.
+    pub(crate) age: u32,
+    /// How many records of its kind come before it in the extracts.
+    pub(crate) order: u64,
+    /// 0 if it is not known.
+    pub(crate) version: i32,
+    /// Which extract it is from.
+    pub(crate) file: u32,
+}
+
+impl Origin {
+    /// The origin of an object of a block, of which its version alone is known.
+    pub(crate) fn of_version(version: i32) -> Self {
+        Self { version: known_version(version).unwrap_or_default(), ..Self::default() }
+    }
+
+    /// Puts it in its place among all of its kind, of which there were `count` before.
+    pub(crate) fn place(&mut self, reading: &Reading<'_>, file: u32, count: &mut u64) {
+        self.age = if reading.is_of_several() { i32::MAX.abs_diff(self.version) } else { 0 };
+        (self.order, self.file) = (*count, file);
+        *count += 1;
+    }
+
+    pub(crate) fn encode(self, bytes: &mut Vec<u8>) {
+        push_varint(bytes, self.age.into());
+        push_varint(bytes, self.order);
+        push_signed(bytes, self.version.into());
+        push_varint(bytes, self.file.into());
+    }
+
+    pub(crate) fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        Some(Self {
+            age: take_number(bytes)?,
+            order: take_number(bytes)?,
+            version: take_signed(bytes)?.try_into().ok()?,
+            file: take_number(bytes)?,
+        })
+    }
 }
 
 impl SortRecord for WayRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        push_varint(bytes, to_zigzag(self.way_id));
-        push_varint(bytes, self.age.into());
-        push_varint(bytes, self.order);
-        push_varint(bytes, to_zigzag(self.version.into()));
-        push_varint(bytes, self.file.into());
-        for part in [&self.bytes, &self.facts] {
-            push_varint(bytes, part.len() as u64);
-            bytes.extend(part);
-        }
+        push_signed(bytes, self.way_id);
+        self.origin.encode(bytes);
+        push_bytes(bytes, &self.bytes);
+        push_bytes(bytes, &self.facts);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let way_id = zigzag(varint(bytes).ok()?);
-        let age = varint(bytes).ok()?.try_into().ok()?;
-        let order = varint(bytes).ok()?;
-        let version = zigzag(varint(bytes).ok()?).try_into().ok()?;
-        let file = varint(bytes).ok()?.try_into().ok()?;
-        let mut part = || -> Option<Box<[u8]>> {
-            let length = varint(bytes).ok()?.try_into().ok()?;
-            let (own, rest) = bytes.split_at_checked(length)?;
-            *bytes = rest;
-            Some(own.into())
-        };
-        let (own, facts) = (part()?, part()?);
-        Some(Self { way_id, age, order, version, file, bytes: own, facts })
+        Some(Self {
+            way_id: take_signed(bytes)?,
+            origin: Origin::decode(bytes)?,
+            bytes: take_bytes(bytes)?.into(),
+            facts: take_bytes(bytes)?.into(),
+        })
     }
 
     fn extra_bytes(&self) -> usize {
@@ -79,11 +102,11 @@ pub(crate) struct SoughtId(pub(crate) i64);
 
 impl SortRecord for SoughtId {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        push_varint(bytes, to_zigzag(self.0));
+        push_signed(bytes, self.0);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        Some(Self(zigzag(varint(bytes).ok()?)))
+        take_signed(bytes).map(Self)
     }
 }
 
@@ -134,12 +157,12 @@ impl Mention {
 
 impl SortRecord for Mention {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        push_varint(bytes, to_zigzag(self.node_id));
+        push_signed(bytes, self.node_id);
         push_varint(bytes, self.visit);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        Some(Self { node_id: zigzag(varint(bytes).ok()?), visit: varint(bytes).ok()? })
+        Some(Self { node_id: take_signed(bytes)?, visit: take_number(bytes)? })
     }
 }
 
@@ -156,18 +179,16 @@ pub(crate) struct Located {
 
 impl SortRecord for Located {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        push_varint(bytes, to_zigzag(self.node_id));
+        push_signed(bytes, self.node_id);
         push_varint(bytes, self.order);
         push_location(bytes, self.location);
         bytes.push(self.layer);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let node_id = zigzag(varint(bytes).ok()?);
-        let order = varint(bytes).ok()?;
+        let (node_id, order) = (take_signed(bytes)?, take_number(bytes)?);
         let location = take_location(bytes)?;
-        let (&layer, rest) = bytes.split_first()?;
-        *bytes = rest;
+        let [layer] = take_array(bytes)?;
         Some(Self { node_id, order, location, layer })
     }
 }
@@ -205,7 +226,7 @@ impl SortRecord for Stop {
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        Some(Self { visit: varint(bytes).ok()?, location: take_location(bytes)? })
+        Some(Self { visit: take_number(bytes)?, location: take_location(bytes)? })
     }
 }
 
@@ -214,10 +235,8 @@ fn push_location(bytes: &mut Vec<u8>, location: Location) {
 }
 
 fn take_location(bytes: &mut &[u8]) -> Option<Location> {
-    let (parts, rest) = bytes.split_first_chunk::<8>()?;
-    *bytes = rest;
-    let [a, b, c, d, e, f, g, h] = *parts;
-    Some([i32::from_le_bytes([a, b, c, d]), i32::from_le_bytes([e, f, g, h])])
+    let mut part = || take_array(bytes).map(i32::from_le_bytes);
+    Some([part()?, part()?])
 }
 
 #[cfg(test)]

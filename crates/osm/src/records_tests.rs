@@ -32,7 +32,8 @@ proptest! {
     ) {
         let (file, age, facts) = (order as u32, version.unsigned_abs(), bytes.iter().rev().copied());
         let facts = facts.collect();
-        check(&WayRecord { way_id: id, age, order, version, file, bytes: bytes.into(), facts });
+        let origin = Origin { age, order, version, file };
+        check(&WayRecord { way_id: id, origin, bytes: bytes.into(), facts });
         check(&Mention::new(id, order >> 3, WayUse::Carrier, mark));
         check(&Located { node_id: id, order, location, layer: 2 });
         check(&Stop::new(order >> 2, [mark, !mark], location));

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_roads::{FunctionalRoadClass, LossReason};
+use serde::{Deserialize, Serialize};
 
 /// What to show with anything made from an extract (`OpenStreetMap` Foundation, *Attribution Guidelines*, 2021).
 pub const ATTRIBUTION: &str = "© OpenStreetMap contributors, ODbL 1.0";
@@ -11,30 +12,38 @@ pub const ATTRIBUTION: &str = "© OpenStreetMap contributors, ODbL 1.0";
 ///
 /// Each way is counted: `highway_ways = road_ways + left_out.total()`.
 ///
+/// Written down is what is counted while ways are read; all else is known only later, or stands elsewhere.
+///
 /// A file that was cut off exactly between two blobs looks like a smaller file: the format has no mark for its end.
 /// If nodes are lost that way, `nodes_missing` shows it; if only whole ways are lost, nothing shows it.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ExtractSummary {
     /// Parts of the file of types that are not known, passed over as the format asks. Also what is left of a known part
     /// when its type was damaged: no checksum covers it.
+    #[serde(skip)]
     pub blobs_passed_over: u64,
     /// Nodes in the file.
     pub nodes_seen: u64,
     /// Different nodes that the roads name.
+    #[serde(skip)]
     pub nodes_needed: u64,
     /// How many of them have no position in the file.
+    #[serde(skip)]
     pub nodes_missing: u64,
     /// Ways in the file.
     pub ways_seen: u64,
     /// Ways with a `highway` tag.
     pub highway_ways: u64,
     /// Ways that became roads.
+    #[serde(skip)]
     pub road_ways: u64,
     /// Roads handed out: at least one per way of `road_ways`, more where missing nodes cut it.
+    #[serde(skip)]
     pub roads: u64,
     /// Why the other ways with a `highway` tag did not become roads.
     pub left_out: LeftOut,
     /// Ways that the table leaves out: how many, and how long they are, by reason and `highway` value.
+    #[serde(skip)]
     pub left_out_ways: BTreeMap<(LeftOutReason, String), LeftOutWays>,
     /// Per `highway` value that the table lists: its class and how many ways have it.
     pub highways: BTreeMap<String, HighwayCount>,
@@ -44,15 +53,18 @@ pub struct ExtractSummary {
     pub tags_taken_otherwise: BTreeMap<String, u64>,
     /// The box that the file's header gives: west, south, east, north, degrees. `None` without one on Earth, and, like
     /// what else the header says, where the file is several in a row.
+    #[serde(skip)]
     pub header_bounds_deg: Option<[f64; 4]>,
     /// The program that wrote the file, as its header says.
+    #[serde(skip)]
     pub generator: Option<String>,
     /// How recent the data is, in seconds since 1970, as its header says.
+    #[serde(skip)]
     pub timestamp_s: Option<i64>,
 }
 
 /// Ways with one `highway` value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HighwayCount {
     /// The class of the ways; `None` when the table lists the value as no road.
     pub class: Option<FunctionalRoadClass>,
@@ -61,7 +73,7 @@ pub struct HighwayCount {
 }
 
 /// Ways with a `highway` tag that did not become roads, by reason.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct LeftOut {
     /// The table lists the value as no road.
     pub listed: u64,
@@ -72,8 +84,10 @@ pub struct LeftOut {
     /// Ways with `area=yes`.
     pub area: u64,
     /// Another way of the file has the same id.
+    #[serde(skip)]
     pub duplicate: u64,
     /// Too few nodes, or too few that the file holds and the projection can place; or they go to and fro over one place.
+    #[serde(skip)]
     pub without_line: u64,
 }
 
@@ -121,32 +135,5 @@ impl LeftOut {
     #[must_use]
     pub const fn total(&self) -> u64 {
         self.listed + self.class_off + self.unknown + self.area + self.duplicate + self.without_line
-    }
-}
-
-impl ExtractSummary {
-    /// Asserts what holds of every summary; for tests.
-    ///
-    /// # Panics
-    /// When the counts contradict each other.
-    pub fn check_invariants(&self) {
-        assert_eq!(self.highway_ways, self.road_ways + self.left_out.total(), "a way went unnamed");
-        assert!(self.highway_ways <= self.ways_seen);
-        assert!(self.road_ways <= self.roads);
-        assert!(self.nodes_missing <= self.nodes_needed);
-        assert_eq!(self.left_out.unknown, self.unknown_highways.values().sum::<u64>());
-        let of_reason = |reason| {
-            let ways = self.left_out_ways.iter().filter(|((own, _), _)| *own == reason);
-            ways.map(|(_, found)| found.ways).sum::<u64>()
-        };
-        let LeftOut { listed, class_off, unknown, area, .. } = self.left_out;
-        let wanted = [class_off, listed, unknown, area];
-        assert_eq!(
-            LeftOutReason::ALL.map(of_reason),
-            wanted,
-            "a way was left out without a length"
-        );
-        let known: u64 = self.highways.values().map(|highway| highway.ways).sum();
-        assert_eq!(self.highway_ways, known + self.left_out.unknown);
     }
 }

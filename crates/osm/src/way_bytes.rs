@@ -20,7 +20,9 @@ use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes, Struct
 use crate::{
     LeftOutReason,
     spool::damaged,
-    wire::{push_varint, to_zigzag, varint, zigzag},
+    wire::{
+        push_bytes, push_signed, push_varint, take_array, take_bytes, take_number, varint, zigzag,
+    },
 };
 
 /// Writes a road's nodes and what it is.
@@ -36,8 +38,7 @@ pub(crate) fn way_bytes(
     bytes.extend(codes);
     push_varint(&mut bytes, width_mm.into());
     for text in texts {
-        push_varint(&mut bytes, text.len() as u64);
-        bytes.extend(text.as_bytes());
+        push_bytes(&mut bytes, text.as_bytes());
     }
     bytes.into()
 }
@@ -68,8 +69,7 @@ pub(crate) fn left_out_bytes(node_ids: &[i64], way: LeftOutWay<&str>) -> Box<[u8
     let mut bytes = Vec::with_capacity(2 * node_ids.len() + highway.len() + 16);
     push_node_ids(&mut bytes, node_ids);
     bytes.extend([LEFT_OUT, reason as u8]);
-    push_varint(&mut bytes, highway.len() as u64);
-    bytes.extend(highway.as_bytes());
+    push_bytes(&mut bytes, highway.as_bytes());
     let (structure, layer) =
         carrier.map_or((0, 0), |(structure, layer)| (structure as u8 + 1, layer));
     bytes.extend([structure, layer.cast_unsigned()]);
@@ -87,7 +87,7 @@ fn push_node_ids(bytes: &mut Vec<u8>, node_ids: &[i64]) {
     push_varint(bytes, node_ids.len() as u64);
     let mut last = 0_i64;
     for &id in node_ids {
-        push_varint(bytes, to_zigzag(id.wrapping_sub(last)));
+        push_signed(bytes, id.wrapping_sub(last));
         last = id;
     }
 }
@@ -118,21 +118,19 @@ pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
         let LeftOutWay { reason, highway, carrier } = take_left_out(bytes)?;
         return Some(WayKind::LeftOut(LeftOutWay { reason, highway: highway.to_owned(), carrier }));
     }
-    let (&[class, ref codes @ ..], rest) = bytes.split_first_chunk::<6>()?;
-    *bytes = rest;
-    let width_mm = u32::try_from(varint(bytes).ok()?).ok()?;
-    let road = RoadAttributes::from_parts(*codes, width_mm, || take_text(bytes))?;
+    let [class] = take_array(bytes)?;
+    let codes = take_array(bytes)?;
+    let width_mm = take_number(bytes)?;
+    let road = RoadAttributes::from_parts(codes, width_mm, || take_str(bytes).map(str::to_owned))?;
     Some(WayKind::Road(FunctionalRoadClass::new(class)?, road))
 }
 
 /// The same for a way that is left out.
 pub(crate) fn take_left_out<'b>(bytes: &mut &'b [u8]) -> Option<LeftOutWay<&'b str>> {
-    let (&[_, reason], rest) = bytes.split_first_chunk::<2>()?;
-    *bytes = rest;
+    let [_, reason] = take_array(bytes)?;
     let reason = *LeftOutReason::ALL.get(usize::from(reason))?;
     let highway = take_str(bytes)?;
-    let (&[structure, layer], rest) = bytes.split_first_chunk::<2>()?;
-    *bytes = rest;
+    let [structure, layer] = take_array(bytes)?;
     let carrier = match structure.checked_sub(1) {
         Some(code) => Some((*Structure::ALL.get(usize::from(code))?, layer.cast_signed())),
         None => None,
@@ -145,15 +143,8 @@ pub(crate) fn is_carrier(after_nodes: &[u8]) -> bool {
     matches!(after_nodes, [LEFT_OUT, .., structure, _] if *structure > 0)
 }
 
-fn take_text(bytes: &mut &[u8]) -> Option<String> {
-    take_str(bytes).map(str::to_owned)
-}
-
 fn take_str<'b>(bytes: &mut &'b [u8]) -> Option<&'b str> {
-    let length = varint(bytes).ok()?.try_into().ok()?;
-    let (text, rest) = bytes.split_at_checked(length)?;
-    *bytes = rest;
-    str::from_utf8(text).ok()
+    str::from_utf8(take_bytes(bytes)?).ok()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::io;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Defect, ExtractSummary, counts::Counts, spool::damaged};
+use crate::{Defect, ExtractSummary, spool::damaged};
 
 /// More than any way has: its defects name a value or two of a few hundred characters.
 const MOST_BYTES: usize = 1 << 16;
@@ -12,7 +12,7 @@ const MOST_BYTES: usize = 1 << 16;
 /// What one way adds to the counts, and what is wrong with its tags.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct WayFacts {
-    pub(crate) counts: Counts,
+    pub(crate) counts: ExtractSummary,
     pub(crate) defects: Vec<Defect>,
 }
 
@@ -31,9 +31,5 @@ impl WayFacts {
         let (facts, _) =
             bincode::serde::decode_from_slice(bytes, limited).map_err(|_| damaged())?;
         Ok(facts)
-    }
-
-    pub(crate) fn of(summary: ExtractSummary, defects: Vec<Defect>) -> Self {
-        Self { counts: summary.into(), defects }
     }
 }

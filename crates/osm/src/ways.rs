@@ -10,10 +10,9 @@ use corniche_roads::{
 use crate::{
     Defect, ExtractSummary, HighwayCount, LeftOutReason,
     block::BlockWay,
-    location::{Location, location_from_nano},
-    records::WayRecord,
+    location::Location,
+    records::{Origin, WayRecord},
     text::Text,
-    versions::known_version,
     way_bytes::{LeftOutWay, left_out_bytes, way_bytes},
     way_facts::WayFacts,
 };
@@ -30,7 +29,7 @@ pub(crate) enum Counted {
 /// The road ways of a block, with what is known of its other ways.
 #[derive(Debug, Default)]
 pub(crate) struct Ways {
-    /// Roads, and ways that are left out, in the order of the block, which is counted from 0.
+    /// Roads, and ways that are left out, in the order of the block.
     pub(crate) roads: Vec<WayRecord>,
     /// Where nodes lie, in files that say so in their ways (`LocationsOnWays`).
     pub(crate) located: Vec<(i64, Location)>,
@@ -92,8 +91,7 @@ impl Ways {
         self.located.extend(located);
         self.held_bytes += held_bytes;
         for mut road in roads {
-            road.order = self.roads.len() as u64;
-            road.facts = WayFacts::of(summary.clone(), defects.clone()).to_bytes();
+            road.facts = WayFacts { counts: summary.clone(), defects: defects.clone() }.to_bytes();
             self.held_bytes += road.facts.len() as u64;
             self.roads.push(road);
         }
@@ -220,13 +218,9 @@ impl Ways {
         text_bytes: usize,
         to_bytes: impl FnOnce(&[i64]) -> Box<[u8]>,
     ) {
-        self.node_ids.clear();
-        self.node_ids.extend(way.refs());
-        self.nodes_named += self.node_ids.len() as u64;
-        // The block was checked: one for each node, or none at all.
-        let locations = way.places_nano_deg().map(|[lon, lat]| location_from_nano(lon, lat));
         let before = self.located.len();
-        self.located.extend(self.node_ids.iter().copied().zip(locations));
+        way.take_nodes(&mut self.node_ids, &mut self.located);
+        self.nodes_named += self.node_ids.len() as u64;
         let has_locations = self.located.len() > before;
         let location_bytes = if has_locations { size_of::<(i64, Location)>() } else { 0 };
         let node_bytes = size_of::<i64>() + location_bytes;
@@ -234,12 +228,9 @@ impl Ways {
         self.held_bytes += (text_bytes + WAY_BYTES + 2 * self.node_ids.len() * node_bytes) as u64;
         self.roads.push(WayRecord {
             way_id: way.id,
-            age: 0,
-            file: 0,
-            facts: Box::default(),
-            order: self.roads.len() as u64,
-            version: known_version(way.info.version).unwrap_or_default(),
+            origin: Origin::of_version(way.info.version),
             bytes: to_bytes(&self.node_ids),
+            facts: Box::default(),
         });
     }
 }

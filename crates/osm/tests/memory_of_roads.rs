@@ -16,8 +16,8 @@ use std::{
     sync::Mutex,
 };
 
-use common::{POOL, request, to_lattice};
-use corniche_osm::{ReadRequest, read_roads_from};
+use common::{POOL, request, roads::read_roads_from, to_lattice};
+use corniche_osm::ReadRequest;
 use corniche_store::{Scratch, Span};
 use corniche_testing::pbf::{Block, plain_header, raw};
 

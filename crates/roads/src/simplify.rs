@@ -1,6 +1,6 @@
 //! Road lines lose points within a tolerance, the same points in whichever direction a line runs.
 
-use corniche_geom::{LatticePoint, Polyline, cross};
+use corniche_geom::{LatticePoint, Polyline, cross, dot};
 
 use crate::Road;
 
@@ -137,12 +137,6 @@ fn distance_to_segment_steps(p: LatticePoint, a: LatticePoint, b: LatticePoint) 
         return p.distance_steps(b);
     }
     cross(a, b, p).unsigned_abs() as f64 / a.distance_steps(b)
-}
-
-/// (to − from) · (p − from), exactly.
-fn dot(from: LatticePoint, to: LatticePoint, p: LatticePoint) -> i128 {
-    i128::from(to.u - from.u) * i128::from(p.u - from.u)
-        + i128::from(to.v - from.v) * i128::from(p.v - from.v)
 }
 
 #[cfg(test)]

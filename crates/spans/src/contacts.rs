@@ -8,7 +8,7 @@
 //!   no crossing        a crossing      no crossing
 //! ```
 
-use corniche_geom::{LatticePoint, cross};
+use corniche_geom::{LatticePoint, cross, dot};
 
 use crate::chain_lines::{ChainLine, ChainLines, Next, OnLine, Onward, Ray};
 
@@ -262,11 +262,6 @@ fn is_between(at: LatticePoint, [from, to]: [LatticePoint; 2], point: LatticePoi
         turn if turn > 0 => is_left(from, point) && is_left(point, to),
         _ => !(is_left(to, point) && is_left(point, from)),
     }
-}
-
-fn dot(at: LatticePoint, one: LatticePoint, other: LatticePoint) -> i128 {
-    let [a, b] = [one, other].map(|to| [to.u - at.u, to.v - at.v].map(i128::from));
-    a[0] * b[0] + a[1] * b[1]
 }
 
 fn square(at: LatticePoint, to: LatticePoint) -> i128 {

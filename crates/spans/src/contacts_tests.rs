@@ -4,7 +4,7 @@ use corniche_roads::Structure::{Bridge, Ground};
 
 use crate::{
     Crossing, crossings,
-    test_network::{Way, distance_m, network, way},
+    network_tests::{Way, distance_m, network, way},
 };
 
 /// Places of a line, metres; nodes of different lines are different ones.

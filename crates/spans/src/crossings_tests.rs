@@ -3,7 +3,7 @@
 use corniche_roads::Structure::{self, Bridge, Ground, Tunnel};
 
 use super::*;
-use crate::test_network::{Way, distance_m, network, way};
+use crate::network_tests::{Way, distance_m, network, way};
 
 /// Upper way, lower way, whether the order is known, and the place in metres.
 fn found(ways: &[Way<'_>]) -> Vec<(i64, i64, bool, [i64; 2])> {

@@ -20,12 +20,12 @@ mod crossing_place;
 mod crossings;
 mod harmonic;
 mod lifts;
+#[cfg(test)]
+mod network_tests;
 mod refusals;
 mod span_finder;
 mod spans;
 mod structure_heights;
-#[cfg(test)]
-mod test_network;
 mod vicinity;
 
 pub use connected::{SpanLine, connected};

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use crate::{
     SpanReason::{self, GroundWayOnDeck},
-    test_network::{Way, at, solved, way},
+    network_tests::{Way, at, solved, way},
 };
 
 /// A motorway's viaduct of 1000 m, at 600 m above sea at both ends, with nodes of streets in the valley at distances from its first node.

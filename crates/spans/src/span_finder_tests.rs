@@ -5,7 +5,7 @@ use corniche_roads::Structure::{Bridge, Ground, Tunnel};
 use crate::{
     SpanReason::{self, GroundWayOnDeck, KindChange, NoSupport, OneSupport, OpenEnd},
     Spans, Support,
-    test_network::{Way, distance_m, network, way},
+    network_tests::{Way, distance_m, network, way},
 };
 
 /// How many spans there are, the supports by node id, and the reasons with their ways.

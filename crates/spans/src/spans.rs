@@ -116,56 +116,60 @@ impl SpanReason {
     /// What it is called in reports.
     #[must_use]
     pub fn id(self) -> &'static str {
-        match self {
-            Self::NoSupport => "span_no_support",
-            Self::OneSupport => "span_one_support",
-            Self::OpenEnd => "span_open_end",
-            Self::GroundWayOnDeck => "ground_way_on_deck",
-            Self::KindChange => "kind_change",
-            Self::LayerTie => "layer_tie",
-            Self::OrderUnreachable => "order_unreachable",
-            Self::OrderReversed => "order_reversed",
-            Self::NoGround => "no_ground",
-            Self::TooIntricate => "span_too_intricate",
-            Self::TooManyCrossings => "too_many_crossings",
-            Self::GradeOverLimit => "grade_over_limit",
-            Self::DeckInGround => "deck_in_ground",
-            Self::TunnelAboveGround => "tunnel_above_ground",
-        }
+        self.texts()[0]
     }
 
     /// What it means, in words.
     #[must_use]
     pub fn words(self) -> &'static str {
+        self.texts()[1]
+    }
+
+    fn texts(self) -> [&'static str; 2] {
         match self {
-            Self::NoSupport => "no road on the ground meets its ends: it stays on the ground",
-            Self::OneSupport => "one end alone meets the ground: it is level",
-            Self::OpenEnd => {
-                "a bridge that ends where nothing goes on has the ground's height there"
+            Self::NoSupport => {
+                ["span_no_support", "no road on the ground meets its ends: it stays on the ground"]
             }
-            Self::GroundWayOnDeck => {
-                "a road on the ground meets it between its ends, and does not carry it"
+            Self::OneSupport => ["span_one_support", "one end alone meets the ground: it is level"],
+            Self::OpenEnd => [
+                "span_open_end",
+                "a bridge that ends where nothing goes on has the ground's height there",
+            ],
+            Self::GroundWayOnDeck => [
+                "ground_way_on_deck",
+                "a road on the ground meets it between its ends, and does not carry it",
+            ],
+            Self::KindChange => {
+                ["kind_change", "a bridge goes on as a tunnel: the joint has the ground's height"]
             }
-            Self::KindChange => "a bridge goes on as a tunnel: the joint has the ground's height",
-            Self::LayerTie => {
-                "it crosses another one of the same layer: nothing says which is above"
+            Self::LayerTie => [
+                "layer_tie",
+                "it crosses another one of the same layer: nothing says which is above",
+            ],
+            Self::OrderUnreachable => {
+                ["order_unreachable", "less than a metre above or below what it crosses"]
             }
-            Self::OrderUnreachable => "less than a metre above or below what it crosses",
-            Self::OrderReversed => "on the wrong side of what it crosses",
-            Self::NoGround => "an end lies where there is no ground",
-            Self::TooIntricate => {
-                "it joins too many ways, or has too many points: what is not solved of it stays on the ground"
+            Self::OrderReversed => ["order_reversed", "on the wrong side of what it crosses"],
+            Self::NoGround => ["no_ground", "an end lies where there is no ground"],
+            Self::TooIntricate => [
+                "span_too_intricate",
+                "it joins too many ways, or has too many points: what is not solved of it stays on the ground",
+            ],
+            Self::TooManyCrossings => [
+                "too_many_crossings",
+                "it crosses bridges, tunnels or other roads too often: nothing is lifted for its crossings",
+            ],
+            Self::GradeOverLimit => {
+                ["grade_over_limit", "steeper than roads of its kind are built"]
             }
-            Self::TooManyCrossings => {
-                "it crosses bridges, tunnels or other roads too often: nothing is lifted for its crossings"
-            }
-            Self::GradeOverLimit => "steeper than roads of its kind are built",
-            Self::DeckInGround => {
-                "the ground beneath is more than a metre above the line between its ends"
-            }
-            Self::TunnelAboveGround => {
-                "the ground above is more than a metre below the line between its ends"
-            }
+            Self::DeckInGround => [
+                "deck_in_ground",
+                "the ground beneath is more than a metre above the line between its ends",
+            ],
+            Self::TunnelAboveGround => [
+                "tunnel_above_ground",
+                "the ground above is more than a metre below the line between its ends",
+            ],
         }
     }
 

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::{
     SpanReason::{GradeOverLimit, LayerTie, NoGround, OrderUnreachable},
-    test_network::{Way, at, solved, way},
+    network_tests::{Way, at, solved, way},
 };
 
 /// A bridge of 200 m over a gorge, and a road beneath it at a distance from its beginning.

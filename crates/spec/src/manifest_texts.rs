@@ -1,9 +1,9 @@
 //! Texts and records that every manifest has: written by the build, compared by `verify`.
 
-use corniche_dem::{Clip, GridPlan};
+use corniche_dem::GridPlan;
 use corniche_geom::LatticePoint;
 use corniche_gis::{DatumOperation, libraries};
-use corniche_tileset::{ClipRecord, DatumOperationRecord, Manifest, VerticalRecord};
+use corniche_tileset::{DatumOperationRecord, Manifest, VerticalRecord};
 
 use crate::extent::Outline;
 
@@ -19,16 +19,6 @@ pub const HEIGHT_UNIT: &str = "metre";
 pub fn outline(outline: &Outline) -> Vec<Vec<Vec<[i64; 2]>>> {
     let ring = |ring: &Vec<LatticePoint>| ring.iter().map(|at| [at.u, at.v]).collect();
     outline.iter().map(|rings| rings.iter().map(ring).collect()).collect()
-}
-
-/// The part of the elevation files that the package is of.
-#[must_use]
-pub fn clip(plan: &GridPlan) -> Option<ClipRecord> {
-    plan.clip.map(|Clip { nodes, whole_data_bounds, whole_wgs84_bounds }| ClipRecord {
-        nodes,
-        whole_data_bounds,
-        whole_wgs84_bounds,
-    })
 }
 
 /// How positions come from one datum to another, as packages record it.

@@ -24,6 +24,7 @@ mod data;
 pub mod disks;
 #[cfg(feature = "hostile")]
 pub mod hostile;
+mod lengths;
 #[cfg(feature = "packages")]
 pub mod package;
 pub mod payload;
@@ -37,6 +38,8 @@ mod random;
 mod raster;
 mod skip;
 mod tier;
+#[cfg(feature = "tins")]
+mod tins;
 
 pub use area_extract::extract_with_areas;
 pub use boundary_extract::extract_with_boundaries;
@@ -44,9 +47,12 @@ pub use coast_extract::extract_with_coast;
 #[cfg(feature = "rasters")]
 pub use colour_image::ColourImage;
 pub use data::{real_data, root, sample, srtm_heights};
+pub use lengths::length_steps;
 pub use projection::FlatProjection;
 pub use random::Random;
 #[cfg(feature = "rasters")]
 pub use raster::{Raster, raster_creation_options};
 pub use skip::skip;
 pub use tier::{Tier, cases, is_full, some_of};
+#[cfg(feature = "tins")]
+pub use tins::{check_covers_ground, check_tin};

@@ -236,7 +236,7 @@ pub fn written_with(
     tiles: impl IntoIterator<Item = (TileId, Vec<u8>)>,
 ) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    let mut writer = Writer::new(&mut bytes, manifest).unwrap();
+    let mut writer = Writer::new(&mut bytes, manifest, usize::MAX).unwrap();
     for (id, tile) in tiles {
         writer.add(id, &tile).unwrap();
     }

@@ -1,4 +1,4 @@
-//! What the sections of packages are made of: bytes of each kind, then of the parts of relief, photos and areas.
+//! What the sections of packages are made of: bytes of each kind, then of the parts of photos.
 //!
 //! ```sh
 //! cargo run --release -p corniche-tileset --features write --example section_bytes -- A.pmtiles B.pmtiles
@@ -8,40 +8,24 @@
 use std::{env, error::Error, path::Path};
 
 use corniche_areas::ClassedLayer;
-use corniche_tileset::{
-    FilePackage, PayloadContext, PayloadSizes, Sections, area_part_sizes, decode, payload_sizes,
-    photo_section,
-};
+use corniche_tileset::{FilePackage, PayloadSizes, payload_sizes, photo_section};
 
-/// Parts in the order of [`corniche_tileset::Relief::part_sizes`].
-const RELIEF_PARTS: [&str; 10] =
-    ["head", "gaps", "water", "smooth", "division 5", "4", "3", "2", "1 (finest)", "border"];
-/// Parts in the order of [`area_part_sizes`].
-const AREA_PARTS: [&str; 5] = ["numbers", "ids", "names", "steps", "beside the lattice"];
 const PHOTO_PARTS: [&str; 3] = ["coverage", "heads and tables", "coded blocks"];
 
 /// Bytes of a package.
 #[derive(Default)]
 struct Sums {
     sections: [u64; 10],
-    relief: [u64; RELIEF_PARTS.len()],
-    areas: [u64; AREA_PARTS.len()],
     photo: [u64; PHOTO_PARTS.len()],
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
     for file in env::args().skip(1) {
         let package = FilePackage::open(Path::new(&file))?;
-        let PayloadContext { frame, quantum_m, .. } = PayloadContext::of(package.manifest());
         let mut sums = Sums::default();
         for id in package.tile_ids()? {
             let Some(payload) = package.tile(id)? else { continue };
             add(&mut sums.sections, stored(&payload_sizes(&payload, id)?));
-            let tile = decode(&payload, id, &frame, quantum_m, Sections::RELIEF)?;
-            if let Some(relief) = &tile.relief {
-                add(&mut sums.relief, relief.part_sizes().map(|bytes| bytes as u64));
-            }
-            add(&mut sums.areas, area_part_sizes(&payload, id)?.map(|bytes| bytes as u64));
             if let Some(photo) = photo_section(&payload, id)? {
                 add(&mut sums.photo, photo_parts(photo.bytes()).map(|bytes| bytes as u64));
             }
@@ -61,8 +45,6 @@ fn main() -> Result<(), Box<dyn Error>> {
             "spans",
         ];
         table("sections", &names, &sums.sections, whole);
-        table("relief", &RELIEF_PARTS, &sums.relief, whole);
-        table("areas, each part compressed by itself", &AREA_PARTS, &sums.areas, whole);
         table("photo", &PHOTO_PARTS, &sums.photo, whole);
     }
     Ok(())

@@ -7,23 +7,20 @@
 
 use std::{env, error::Error, path::Path, time::Instant};
 
-use corniche_tileset::{
-    FilePackage, PayloadContext, Sections, decode, encode, payload_sizes, terrain_part_sizes,
-};
+use corniche_tileset::{FilePackage, PayloadContext, Sections, decode, encode, payload_sizes};
 
 /// Each tile is written and read so many times; the fastest counts.
 const TIMES: usize = 5;
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!(
-        "| package | tiles | vertices | triangles | bytes | bytes a triangle | bits a vertex: record | positions | triangles | heights | normals | encode, µs a vertex | decode, µs a vertex |"
+        "| package | tiles | vertices | triangles | bytes | bytes a triangle | bits a vertex | encode, µs a vertex | decode, µs a vertex |"
     );
     for file in env::args().skip(1) {
         let package = FilePackage::open(Path::new(&file))?;
         let context = PayloadContext::of(package.manifest());
         let PayloadContext { frame, quantum_m, .. } = context;
         let (mut tiles, mut vertices, mut triangles, mut bytes) = (0, 0, 0, 0);
-        let mut parts = [0; 5];
         let mut seconds = [0.0; 2];
         for id in package.tile_ids()? {
             let Some(payload) = package.tile(id)? else { continue };
@@ -33,9 +30,6 @@ fn main() -> Result<(), Box<dyn Error>> {
             vertices += ground.tin.vertices().len();
             triangles += ground.tin.triangles().len();
             bytes += payload_sizes(&payload, id)?.terrain.stored;
-            for (sum, part) in parts.iter_mut().zip(terrain_part_sizes(&tile, &context)?) {
-                *sum += part;
-            }
             let mut fastest = [f64::INFINITY; 2];
             for _ in 0..TIMES {
                 let begin = Instant::now();
@@ -53,9 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let name = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy();
         print!("| {name} | {tiles} | {vertices} | {triangles} | {bytes} |");
         print!(" {:.3} |", bytes as f64 / f64::from(u32::try_from(triangles)?));
-        for part in parts {
-            print!(" {:.2} |", 8.0 * f64::from(u32::try_from(part)?) / vertices);
-        }
+        print!(" {:.2} |", 8.0 * bytes as f64 / vertices);
         for sum in seconds {
             print!(" {:.3} |", 1e6 * sum / vertices);
         }

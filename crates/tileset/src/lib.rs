@@ -58,7 +58,7 @@ pub use payload::{
 };
 #[cfg(feature = "write")]
 pub use payload::{
-    EncodedTile, PayloadBuilder, PayloadContext, Section, area_part_sizes, encode, encode_areas,
-    encode_lines, encode_photo, encode_sections, encode_spans, photo_section, terrain_part_sizes,
+    EncodedTile, PayloadBuilder, PayloadContext, Section, encode, encode_areas, encode_lines,
+    encode_photo, encode_sections, encode_spans, photo_section,
 };
 pub use tile_order::{pmtiles_order, tile_of_order};

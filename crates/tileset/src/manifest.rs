@@ -11,10 +11,11 @@ mod sv_tails;
 pub(crate) mod check;
 
 pub use contents::{
-    AreaClassRecord, AreaCounts, AreaLevelRecord, AreasRecord, ClipRecord, DatumOperationRecord,
+    AreaClassRecord, AreaCounts, AreaLevelRecord, AreasRecord, DatumOperationRecord,
     LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, Manifest, OuterGround,
-    PhotoLevelRecord, ScaleRecord, SpanCounts, SpansRecord, VerticalRecord,
+    PhotoLevelRecord, SpanCounts, SpansRecord, VerticalRecord,
 };
+pub use corniche_geom::{ClipRecord, ScaleRecord};
 pub use corniche_settings::{
     AreaTableRecord, PhotoRecord, PolygonRecord, ReliefLevels, SettingsRecord,
 };

@@ -41,15 +41,15 @@ mod work_limit;
 
 mod damage;
 
-pub use areas::{AreaRecord, AreaRings, decode_areas};
 #[cfg(feature = "write")]
-pub use areas::{area_part_sizes, encode_areas};
+pub use areas::encode_areas;
+pub use areas::{AreaRecord, AreaRings, decode_areas};
 #[cfg(feature = "write")]
 pub use builder::{EncodedTile, PayloadBuilder, Section};
 pub use damage::{Damage, DecodeError, EncodeError};
 pub use decode::decode;
 #[cfg(feature = "write")]
-pub use encode::{PayloadContext, encode, encode_sections, terrain_part_sizes};
+pub use encode::{PayloadContext, encode, encode_sections};
 pub use envelope::SectionSize;
 #[cfg(feature = "write")]
 pub use lines::encode_lines;

@@ -375,11 +375,11 @@ fn bombs_and_foreign_bytes_are_refused() {
     assert!(small.is_err(), "{small:?}");
     let smaller = part(&resealed(28, &100_u32.to_le_bytes()), Sections::TERRAIN);
     let what = "the length of an uncompressed section";
-    assert_eq!(smaller, Err(("terrain section", Damage::Invalid { what })));
+    assert_eq!(smaller, Err(("terrain section", Damage::Invalid(what))));
     // The second entry is that of the GEO roads, which are compressed.
     let smaller = part(&resealed(48, &1_u32.to_le_bytes()), Sections::ROADS_GEO);
     let what = "the length of a compressed section";
-    assert_eq!(smaller, Err(("GEO roads section", Damage::Invalid { what })));
+    assert_eq!(smaller, Err(("GEO roads section", Damage::Invalid(what))));
     // A section of a kind that this version does not know is passed over.
     let unknown = part(&resealed(16, &99_u16.to_le_bytes()), Sections::TERRAIN).unwrap();
     assert_eq!(unknown.terrain, None);

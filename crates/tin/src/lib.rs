@@ -22,12 +22,10 @@ mod to_tin;
 mod triangle_rows;
 
 mod deviation;
-mod invariants;
 mod normals;
 mod surface;
 
 pub use deviation::{Deviation, TriangleBuckets, WindowPlacement, heights_m, measure};
-pub use invariants::check_covers_ground;
 pub use normals::{decode_normal, gradient, normal_shift, normals};
 pub use surface::{NO_TWIN, Placement, Surface};
 pub use tin::{Tin, TinError, TinVertex};

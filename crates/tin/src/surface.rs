@@ -255,14 +255,9 @@ impl Surface {
     }
 
     fn bounds_of(&self, vertices: &[u32]) -> LatticeBounds {
-        let at = |&vertex: &u32| self.points[vertex as usize];
+        let at = |&vertex: &u32| LatticeBounds::at(self.points[vertex as usize]);
         let first = at(&vertices[0]);
-        vertices.iter().map(at).fold(LatticeBounds { min: first, max: first }, |bounds, p| {
-            LatticeBounds {
-                min: LatticePoint::new(bounds.min.u.min(p.u), bounds.min.v.min(p.v)),
-                max: LatticePoint::new(bounds.max.u.max(p.u), bounds.max.v.max(p.v)),
-            }
-        })
+        vertices.iter().map(at).fold(first, |bounds, point| bounds.union(&point))
     }
 
     /// Looks for the twin around that end of the edge which has fewer triangles: linear in all for a
@@ -290,26 +285,6 @@ impl Surface {
             ([1, 1], [one, other]) if one == half_edge => other,
             ([1, 1], [one, _]) => one,
             _ => NO_TWIN,
-        }
-    }
-
-    /// Asserts what every other method relies on. For tests.
-    ///
-    /// # Panics
-    /// When twins are not mutual, run the same way, or a fan lists a half-edge that starts elsewhere.
-    pub fn check_invariants(&self) {
-        for half_edge in 0..self.twins.len() as u32 {
-            let twin = self.twin(half_edge);
-            if twin != NO_TWIN {
-                assert_eq!(self.twin(twin), half_edge, "twins are mutual");
-                let [a, b] = self.ends(half_edge);
-                assert_eq!(self.ends(twin), [b, a], "twins run opposite ways");
-            }
-        }
-        assert_eq!(self.fans.len(), self.twins.len());
-        for vertex in 0..self.points.len() as u32 {
-            assert!(self.fan(vertex).is_sorted());
-            assert!(self.fan(vertex).iter().all(|&h| self.ends(h)[0] == vertex));
         }
     }
 }

@@ -4,6 +4,25 @@ use super::*;
 use crate::TinVertex;
 use proptest::prelude::*;
 
+impl Surface {
+    /// Asserts what every other method relies on: twins are mutual and run opposite ways, and fans list half-edges that start at their vertex.
+    fn check_invariants(&self) {
+        for half_edge in 0..self.twins.len() as u32 {
+            let twin = self.twin(half_edge);
+            if twin != NO_TWIN {
+                assert_eq!(self.twin(twin), half_edge, "twins are mutual");
+                let [a, b] = self.ends(half_edge);
+                assert_eq!(self.ends(twin), [b, a], "twins run opposite ways");
+            }
+        }
+        assert_eq!(self.fans.len(), self.twins.len());
+        for vertex in 0..self.points.len() as u32 {
+            assert!(self.fan(vertex).is_sorted());
+            assert!(self.fan(vertex).iter().all(|&h| self.ends(h)[0] == vertex));
+        }
+    }
+}
+
 /// A grid of `columns` × `rows` nodes; bit n of `diagonals` turns the diagonal of cell n, bit n of `holes`
 /// takes the cell away.
 fn grid(columns: u16, rows: u16, diagonals: &[bool], holes: &[bool], heights: &[i32]) -> Tin {

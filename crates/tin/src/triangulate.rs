@@ -130,7 +130,3 @@ fn beyond(heights_m: &[f32], most_m: f64) -> Option<f32> {
 
 /// Nodes of a [`TinVertex`] are 16-bit, and there is a halo on both sides.
 const MAX_SIDE: usize = 65_536 + 2;
-
-#[cfg(test)]
-#[path = "triangulate_tests.rs"]
-mod tests;

@@ -32,7 +32,8 @@ pub(crate) struct Source {
     pub(crate) has_height_unit: bool,
     /// Number of the band with the heights.
     pub(crate) band: usize,
-    values: StoredValues,
+    /// How stored values become metres, without the vertical CRS and the shift asked for.
+    pub(crate) values: StoredValues,
     /// Stored in whole rows rather than in tiles.
     pub(crate) is_striped: bool,
     /// Number of the band in which 0 means that there is no sample.
@@ -127,22 +128,6 @@ impl Source {
             heights_m[at] = carried_m;
         }
         Ok(())
-    }
-
-    /// Stored values to metres, in place; NaN where there is no height. Without the vertical CRS
-    /// and the shift asked for.
-    pub(crate) fn convert(&self, values: &mut [f64]) {
-        self.values.convert(values);
-    }
-
-    /// A stored value as `--nodata` takes it.
-    pub(crate) fn stored_text(&self, value: f64) -> String {
-        self.values.stored_text(value)
-    }
-
-    /// Metres between heights whose stored values are neighbouring whole numbers.
-    pub(crate) fn m_per_whole(&self) -> f64 {
-        self.values.m_per_whole()
     }
 
     /// The values of a rectangle of pixels as they are stored, row by row, NaN where a mask says

@@ -11,7 +11,7 @@ use corniche_gis::{Crs, CrsError, CrsOperation, GridCrs, Polygon, PolygonError};
 
 use crate::mosaics::data_extent::{moved_back, rim_and_inside, turns_beyond, unwrap, with_bend};
 use crate::mosaics::mosaic::{Mosaic, Placed, SampleRect};
-use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, node_bounds_m};
+use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions};
 use crate::plan::layout::Layout;
 use crate::{Dem, GridError};
 
@@ -239,7 +239,7 @@ pub(crate) fn needed_samples(
             (min, max.map(|end| end - 1))
         }
         Method::Resampled(positions, kernel) => {
-            let Bounds { min_x, min_y, max_x, max_y } = node_bounds_m(&plan.frame, nodes);
+            let Bounds { min_x, min_y, max_x, max_y } = plan.frame.node_bounds_m(nodes);
             let mut points = rim_and_inside([min_x, max_y], [max_x, min_y]);
             positions.samples_of(&mut points)?;
             let bounds = with_bend(&points);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use corniche_geom::{Bounds, Cell, GridFrame, LatticeRegion, NodeIndex};
+use corniche_geom::{Bounds, Cell, ClipRecord, GridFrame, LatticeRegion, NodeIndex, ScaleRecord};
 use corniche_gis::{CrsOperation, DatumOperation, GridCrs, Polygon};
 
 use crate::plan::kernel::{Alignment, Kernel};
@@ -44,30 +44,6 @@ pub enum Resampling {
     Resampled,
 }
 
-/// How long lengths come out in working metres; scales beyond 0.001 to 1000 are given as these.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanScale {
-    /// Working metres per true metre along x and y, in the middle of the data.
-    pub center: [f64; 2],
-    /// The smallest along x and y, over corners, middles of sides and centre of every file.
-    pub least: [f64; 2],
-    /// The largest.
-    pub largest: [f64; 2],
-}
-
-/// The part of a DEM that a plan is for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Clip {
-    /// The bounds that were asked for, those of a polygon included, rounded outwards to whole
-    /// cells: south-western and north-eastern node. They may reach beyond the data.
-    pub nodes: [NodeIndex; 2],
-    /// Rectangle of the nodes of the whole DEM, working metres.
-    pub whole_data_bounds: Bounds,
-    /// Rectangle around all files in WGS84 degrees. PROJ's operations and the scales are those for
-    /// it.
-    pub whole_wgs84_bounds: Bounds,
-}
-
 /// The grid of a package and how its heights come about.
 #[derive(Debug, Clone)]
 pub struct GridPlan {
@@ -87,9 +63,9 @@ pub struct GridPlan {
     /// Working metres to a true metre, at the centre: the geometric mean along both axes.
     pub point_scale: f64,
     /// The same along each axis, at the centre and over the data's rim.
-    pub scale: PlanScale,
+    pub scale: ScaleRecord,
     /// The part that is asked for; `None`: all of it.
-    pub clip: Option<Clip>,
+    pub clip: Option<ClipRecord>,
     /// The polygon that was asked for, on the lattice.
     pub polygon: Option<Arc<LatticeRegion>>,
     /// Rectangle of the nodes from `south_west` to `north_east`, working metres.
@@ -141,17 +117,6 @@ pub(crate) struct MosaicRole {
 pub(crate) enum Method {
     Aligned(Alignment),
     Resampled(Box<NodePositions>, Kernel),
-}
-
-/// The rectangle between two nodes, working metres.
-#[must_use]
-pub fn node_bounds_m(frame: &GridFrame, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
-    Bounds {
-        min_x: frame.x_m(south_west.i),
-        min_y: frame.y_m(south_west.j),
-        max_x: frame.x_m(north_east.i),
-        max_y: frame.y_m(north_east.j),
-    }
 }
 
 impl GridPlan {

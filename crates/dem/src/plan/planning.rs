@@ -1,15 +1,13 @@
 //! From a DEM and what the user says to the grid of a package.
 
-use corniche_geom::{GridFrame, NodeIndex};
+use corniche_geom::{ClipRecord, GridFrame, NodeIndex};
 use corniche_gis::{CrsError, CrsOperation, DemProjection, GridCrs, libraries};
 
 use crate::mosaics::mosaic::Mosaic;
 use crate::plan::clip::{self, Asked};
 use crate::plan::datum_operations::datum_operations;
 use crate::plan::description::{describe, resampled_onto_first};
-use crate::plan::grid_plan::{
-    Clip, GridPlan, Method, MosaicRole, MosaicRoles, PlanOptions, Resampling, node_bounds_m,
-};
+use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, MosaicRoles, PlanOptions, Resampling};
 use crate::plan::kernel::Kernel;
 use crate::plan::layout::{self, Layout};
 use crate::plan::node_positions::NodePositions;
@@ -103,7 +101,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, GridError> {
         None => whole,
     };
     let frame = GridFrame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
-    let datum_operations = datum_operations(dem, &layout.working, node_bounds_m(&frame, whole))?;
+    let datum_operations = datum_operations(dem, &layout.working, frame.node_bounds_m(whole))?;
     let roles: Vec<MosaicRole> = dem
         .mosaics
         .iter()
@@ -116,10 +114,10 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, GridError> {
         })
         .collect::<Result<_, GridError>>()?;
     let working = layout.working;
-    let data_bounds = node_bounds_m(&frame, [south_west, north_east]);
-    let clip = asked.map(|asked| Clip {
+    let data_bounds = frame.node_bounds_m([south_west, north_east]);
+    let clip = asked.map(|asked| ClipRecord {
         nodes: clip::on_lattice(&frame, asked.nodes),
-        whole_data_bounds: node_bounds_m(&frame, whole),
+        whole_data_bounds: frame.node_bounds_m(whole),
         whole_wgs84_bounds: area_deg,
     });
     let wgs84_bounds = match clip {

@@ -1,6 +1,6 @@
 //! The working CRS: which one, and how its coordinates become working metres.
 
-use corniche_geom::Bounds;
+use corniche_geom::{Bounds, ScaleRecord};
 use corniche_gis::{
     Crs, CrsError, CrsOperation, GridCrs, LocalScale, SCALES, crs_from_text, scales,
 };
@@ -8,7 +8,6 @@ use gdal::errors::GdalError;
 use gdal::spatial_ref::SpatialRef;
 
 use crate::mosaics::mosaic::{Mosaic, rounded};
-use crate::plan::grid_plan::PlanScale;
 use crate::{Dem, GridError};
 
 /// The DEM's own CRS is the working CRS where lengths are then true within this, all over the data:
@@ -124,7 +123,7 @@ fn is_true_within(working: &GridCrs, dem: &Dem, tolerance: f64) -> Result<bool, 
 }
 
 /// How long lengths come out.
-pub(crate) fn scale(working: &GridCrs, dem: &Dem) -> Result<PlanScale, GridError> {
+pub(crate) fn scale(working: &GridCrs, dem: &Dem) -> Result<ScaleRecord, GridError> {
     let outside = || GridError::OutsideCrs { crs: working.crs.label.clone() };
     // The middle of the rectangle, because the standard latitude is taken there; the mean of all
     // positions may lie far from any data.
@@ -133,7 +132,8 @@ pub(crate) fn scale(working: &GridCrs, dem: &Dem) -> Result<PlanScale, GridError
         None => scale_at(working, dem, dem.center_deg)?.ok_or_else(outside)?,
     };
     // Corners outside the area of the CRS (which the user may have chosen) are left out.
-    let mut scale = PlanScale { center: center.along, least: center.along, largest: center.along };
+    let mut scale =
+        ScaleRecord { center: center.along, least: center.along, largest: center.along };
     for LocalScale { along, .. } in rim_scales(working, dem)?.into_iter().flatten() {
         let merge = |known: [f64; 2], pick: fn(f64, f64) -> f64| {
             [pick(known[0], along[0]), pick(known[1], along[1])]
@@ -142,7 +142,7 @@ pub(crate) fn scale(working: &GridCrs, dem: &Dem) -> Result<PlanScale, GridError
         scale.largest = merge(scale.largest, f64::max);
     }
     let recorded = |along: [f64; 2]| along.map(|at| at.clamp(*SCALES.start(), *SCALES.end()));
-    Ok(PlanScale {
+    Ok(ScaleRecord {
         center: recorded(scale.center),
         least: recorded(scale.least),
         largest: recorded(scale.largest),

@@ -5,7 +5,7 @@ use corniche_gis::{CrsError, CrsOperation};
 
 use crate::mosaics::mosaic::{Mosaic, SampleRect};
 use crate::plan::clip::needed_samples;
-use crate::plan::grid_plan::{Clip, Method};
+use crate::plan::grid_plan::Method;
 use crate::plan::kernel::{Kernel, Samples};
 use crate::reading::reader::{MOST_SAMPLES, Reader, around};
 use crate::reading::window_parts::intersection;
@@ -149,7 +149,7 @@ impl Reader<'_> {
             block.heights_m.push(*height_m as f32);
         }
         self.plan.roles.0[range.mosaic].working_from_crs.apply(&mut block.positions_m)?;
-        if let Some(Clip { nodes, .. }) = self.plan.clip {
+        if let Some(corniche_geom::ClipRecord { nodes, .. }) = self.plan.clip {
             block.keep_within(&self.plan.frame, nodes);
         }
         Ok(block)

@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use corniche_gis::{expand_name, unpack_name};
+use corniche_gis::{NameError, Sought, unpack_name};
 
 use crate::fixture::{Raster, check_words, folder, open, options};
 
@@ -17,6 +17,10 @@ fn squares(at: &Path) -> [PathBuf; 2] {
         let raster = Raster::new(4326, [100, 100], [west, 0.001, 0.0, 47.0, 0.0, -0.001]);
         raster.write(at, &format!("square-{k}.tif"), height)
     })
+}
+
+fn expand_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
+    corniche_gis::expand_name(name, Sought::Elevation)
 }
 
 fn names(found: &[PathBuf]) -> Vec<String> {

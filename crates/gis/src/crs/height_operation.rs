@@ -29,7 +29,9 @@ impl HeightOperation {
             .then(|| CrsOperation::new(file, &from.with(file), Some(area_deg)));
         Self {
             place,
-            operation: CrsOperation::exact(&from.with(file), &to.with(file), area_deg),
+            // PROJ may not replace a missing grid by an approximation.
+            operation: CrsOperation::new(&from.with(file), &to.with(file), Some(area_deg))
+                .exactly(),
             values_per_m: 1.0 / from.m_per_value(),
             m_per_value: to.m_per_value(),
             target: to.name.clone(),

@@ -101,11 +101,6 @@ impl CrsOperation {
         Self { seam, ..self }
     }
 
-    /// An operation for heights: PROJ may not replace a missing grid by an approximation.
-    pub(crate) fn exact(from: &Crs, to: &Crs, area_deg: Bounds) -> Self {
-        Self::new(from, to, Some(area_deg)).exactly()
-    }
-
     /// The same, which fails where PROJ knows nothing better than to take one datum for another.
     pub(crate) fn exactly(self) -> Self {
         Self { is_exact: true, key: format!("{} exact", self.key), ..self }
@@ -119,8 +114,8 @@ impl CrsOperation {
         heights: &mut [f64],
     ) -> Result<(), CrsError> {
         let transform = self.transform().map_err(|source| self.failed(source))?;
-        let limit = PlaceLimit::of_crs(&self.from);
-        let points: Vec<[f64; 2]> = points.iter().map(|&point| limit.limited(point)).collect();
+        let points: Vec<[f64; 2]> =
+            points.iter().map(|&point| limited(&self.from, point)).collect();
         let mut xs: Vec<f64> = points.iter().map(|point| point[0]).collect();
         let mut ys: Vec<f64> = points.iter().map(|point| point[1]).collect();
         let _some_failed = transform.transform_coords(&mut xs, &mut ys, heights);
@@ -155,9 +150,8 @@ impl CrsOperation {
         // Between equal systems PROJ is not called: it would only wrap or round the coordinates.
         if !self.is_identity() {
             let transform = self.transform().map_err(|source| self.failed(source))?;
-            let limit = PlaceLimit::of_crs(&self.from);
             for (x, y) in xs.iter_mut().zip(&mut ys) {
-                [*x, *y] = limit.limited([*x, *y]);
+                [*x, *y] = limited(&self.from, [*x, *y]);
             }
             // An error here means that some positions have no image; those come out as infinite.
             let _some_failed = transform.transform_coords(&mut xs, &mut ys, &mut []);
@@ -238,22 +232,9 @@ impl CrsOperation {
     }
 }
 
-/// The largest coordinates of a system that go to PROJ.
-#[derive(Debug, Clone, Copy)]
-struct PlaceLimit {
-    most: f64,
-}
-
-impl PlaceLimit {
-    /// The limit of a system.
-    fn of_crs(crs: &Crs) -> Self {
-        let most = crs.turn_angle().map_or(MOST_METRES / crs.unit_m, |turn| MOST_TURNS * turn);
-        Self { most }
-    }
-
-    /// A position as PROJ may get it: infinite where it is no place, so that it has no image.
-    fn limited(self, position: [f64; 2]) -> [f64; 2] {
-        let is_place = position.iter().all(|value| value.abs() <= self.most);
-        if is_place { position } else { [f64::INFINITY; 2] }
-    }
+/// A position of a system as PROJ may get it: infinite where it is no place, so that it has no image.
+fn limited(crs: &Crs, position: [f64; 2]) -> [f64; 2] {
+    let most = crs.turn_angle().map_or(MOST_METRES / crs.unit_m, |turn| MOST_TURNS * turn);
+    let is_place = position.iter().all(|value| value.abs() <= most);
+    if is_place { position } else { [f64::INFINITY; 2] }
 }

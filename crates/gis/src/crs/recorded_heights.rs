@@ -88,7 +88,7 @@ impl RecordedHeights {
     pub fn datum_in_metres(text: &str) -> Result<Option<String>, CrsError> {
         library_error::quiet();
         let vertical = VerticalCrs::from_text("--dem-vertical-crs", text)?;
-        Ok(is_plain(&vertical).then(|| vertical.label()))
+        Ok(vertical.is_plain().then(|| vertical.label()))
     }
 
     /// WKT2 of the package's CRS together with its heights in metres upwards: a compound CRS, or
@@ -147,18 +147,13 @@ impl RecordedHeights {
     }
 }
 
-/// Whether a system is one of metres upwards.
-fn is_plain(vertical: &VerticalCrs) -> bool {
-    (vertical.unit_m - 1.0).abs() < f64::EPSILON && !vertical.is_down
-}
-
 /// The registered system of the same datum in metres upwards, for one in feet or downwards: formats
 /// that name systems by codes, such as `GeoTIFF`, have no words for one without. `None` where the
 /// system is one of metres upwards itself, or there is no other.
 fn registered_in_metres(vertical: &VerticalCrs) -> Option<String> {
-    let datum = vertical.datum.as_ref().filter(|_| !is_plain(vertical))?;
+    let datum = vertical.datum.as_ref().filter(|_| !vertical.is_plain())?;
     let of_code = |code: u16| VerticalCrs::from_text("the package's", &format!("EPSG:{code}")).ok();
-    let is_meant = |found: &VerticalCrs| is_plain(found) && found.datum.as_ref() == Some(datum);
+    let is_meant = |found: &VerticalCrs| found.is_plain() && found.datum.as_ref() == Some(datum);
     let found = VERTICAL.into_iter().flatten().filter_map(of_code).find(is_meant)?;
     Some(found.wkt.to_string())
 }

@@ -139,12 +139,16 @@ impl VerticalCrs {
         if self.is_down { -self.unit_m } else { self.unit_m }
     }
 
+    /// Whether it counts metres upwards.
+    #[expect(clippy::float_cmp, reason = "a metre is exactly one")]
+    pub(crate) fn is_plain(&self) -> bool {
+        self.unit_m == 1.0 && !self.is_down
+    }
+
     /// WKT2 of a system from the same datum that counts metres upwards: of itself, where it does.
     pub(crate) fn metres_upwards_wkt(&self) -> String {
-        #[expect(clippy::float_cmp, reason = "a metre is exactly one")]
-        let is_plain = self.unit_m == 1.0 && !self.is_down;
         match &self.datum {
-            Some(datum) if !is_plain => format!(
+            Some(datum) if !self.is_plain() => format!(
                 "VERTCRS[\"{datum} height\",VDATUM[\"{datum}\"],CS[vertical,1],\
                  AXIS[\"gravity-related height (H)\",up],LENGTHUNIT[\"metre\",1]]"
             ),
@@ -175,10 +179,8 @@ impl VerticalCrs {
     /// The name for heights of this system in metres upwards.
     #[must_use]
     pub fn label(&self) -> String {
-        #[expect(clippy::float_cmp, reason = "a metre is exactly one")]
-        let is_plain = self.unit_m == 1.0 && !self.is_down;
         match &self.datum {
-            Some(datum) if !is_plain => datum.clone(),
+            Some(datum) if !self.is_plain() => datum.clone(),
             _ => self.name.clone(),
         }
     }

@@ -23,11 +23,14 @@ const EXTRACT_ENDINGS: [&str; 1] = ["pbf"];
 const PHOTO_ENDINGS: [&str; 10] =
     ["tif", "tiff", "jp2", "jpg", "jpeg", "png", "webp", "img", "ecw", "sid"];
 
-/// Files of which a folder is searched.
-#[derive(Clone, Copy)]
-enum Sought {
+/// What a folder is searched for, by the endings of names.
+#[derive(Debug, Clone, Copy)]
+pub enum Sought {
+    /// Elevation files.
     Elevation,
+    /// Extracts: they end in pbf.
     Extracts,
+    /// Photos: they end as images do.
     Photos,
 }
 
@@ -54,41 +57,19 @@ impl fmt::Display for Sought {
     }
 }
 
-/// The extracts that a name stands for, as [`expand_name`] does it for elevation files; of a folder
-/// those that end in pbf.
-///
-/// # Errors
-/// As [`expand_name`].
-pub fn expand_extract_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
-    expand(name, Sought::Extracts)
-}
-
-/// The photos that a name stands for, as [`expand_name`] does it for elevation files; of a folder
-/// those that end as images do.
-///
-/// # Errors
-/// As [`expand_name`].
-pub fn expand_photo_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
-    expand(name, Sought::Photos)
-}
-
 /// The files that a name stands for, in the order in which they have precedence. A name of one file
 /// stands for itself, whether it is there or not.
 ///
 /// - `@LIST`: a text file with a name on each line, counted from the folder of the list; lines that
 ///   are empty or begin with # do not count. Its names may be folders and patterns, but not lists.
-/// - A folder: its files with the endings of elevation files, sorted by name; not those of folders
+/// - A folder: its files with the endings of what is sought, sorted by name; not those of folders
 ///   in it. A folder that is itself a raster stays one.
 /// - A pattern with `*`, `?` or `[…]`: the files that it fits, sorted by name.
 ///
 /// # Errors
 /// When a list cannot be read, a pattern cannot be understood, or a folder or a pattern has no
 /// file.
-pub fn expand_name(name: &Path) -> Result<Vec<PathBuf>, NameError> {
-    expand(name, Sought::Elevation)
-}
-
-fn expand(name: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
+pub fn expand_name(name: &Path, sought: Sought) -> Result<Vec<PathBuf>, NameError> {
     let text = utf8_name(name, FileUse::Dem)?;
     match text.strip_prefix('@').filter(|_| !name.exists()) {
         Some(list) => expand_list(Path::new(list), sought),

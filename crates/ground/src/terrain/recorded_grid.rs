@@ -1,6 +1,6 @@
 //! The grid of a package, from its manifest.
 
-use corniche_dem::{Clip, GridPlan, MosaicRoles, PlanScale, Resampling, node_bounds_m};
+use corniche_dem::{GridPlan, MosaicRoles, Resampling};
 use corniche_geom::{GridFrame, TILE_CELLS};
 use corniche_gis::{CrsError, RecordedCrs, libraries};
 use corniche_spec::manifest_texts;
@@ -10,7 +10,7 @@ use corniche_tileset::{Manifest, limits::MAX_TILES};
 #[must_use]
 pub fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
     let (frame, [south_west, north_east]) = (manifest.frame, manifest.data_nodes());
-    let (scale, working) = (&manifest.scale, crs.working().clone());
+    let working = crs.working().clone();
     GridPlan {
         frame,
         south_west,
@@ -19,14 +19,10 @@ pub fn plan(crs: &RecordedCrs, manifest: &Manifest) -> GridPlan {
         crs_wkt: manifest.crs_wkt.clone(),
         metres_per_unit: working.metres_per_unit,
         point_scale: manifest.point_scale,
-        scale: PlanScale { center: scale.center, least: scale.least, largest: scale.largest },
-        clip: manifest.clip.as_ref().map(|clip| Clip {
-            nodes: clip.nodes,
-            whole_data_bounds: clip.whole_data_bounds,
-            whole_wgs84_bounds: clip.whole_wgs84_bounds,
-        }),
+        scale: manifest.scale,
+        clip: manifest.clip,
         polygon: None,
-        data_bounds: node_bounds_m(&frame, [south_west, north_east]),
+        data_bounds: frame.node_bounds_m([south_west, north_east]),
         wgs84_bounds: manifest.wgs84_bounds,
         // Whether other nodes than samples are thinned or resampled matters to nobody who has no samples.
         resampling: if manifest.nodes_are_samples {

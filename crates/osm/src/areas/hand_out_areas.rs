@@ -4,7 +4,8 @@ use corniche_areas::Area;
 
 use super::{hand_parts::hand_parts, make_areas::make_areas, summary::AreaSummary};
 use crate::{
-    AreaLoss, Defect, ReadOsmError,
+    AreaLoss, Defect,
+    failed::Failed,
     layer_sink::LayerSink,
     outlines::{found::OutlineObjects, located_ways::LocatedWays},
     reading::Reading,
@@ -16,12 +17,11 @@ pub(crate) fn hand_out_areas<'a>(
     (objects, located): (OutlineObjects<'a>, LocatedWays<'a>),
     sink: &mut dyn LayerSink<Area, AreaSummary>,
     on_defect: &mut dyn FnMut(Defect),
-) -> Result<(), ReadOsmError> {
-    let failed = |error| reading.scratch_failed(error);
+) -> Result<(), Failed> {
     let OutlineObjects { known, count, duplicates, members, open_ways, defects, held_bytes } =
         objects;
     sink.begin();
-    defects.tell(on_defect).map_err(failed)?;
+    defects.tell(on_defect)?;
     let all = open_ways + duplicates + count;
     let mut summary = AreaSummary { objects: all, ..AreaSummary::default() };
     for (loss, count) in [(AreaLoss::OpenWay, open_ways), (AreaLoss::Duplicate, duplicates)] {
@@ -29,7 +29,7 @@ pub(crate) fn hand_out_areas<'a>(
             summary.lost.insert(loss, count);
         }
     }
-    let parts = hand_parts(reading, members, located)?.finish().map_err(failed)?;
+    let parts = hand_parts(reading, members, located)?.finish()?;
     make_areas(reading, (known, count), parts, held_bytes, &mut summary, sink, on_defect)?;
     sink.end(summary);
     Ok(())

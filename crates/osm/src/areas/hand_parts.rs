@@ -3,9 +3,9 @@
 use corniche_store::{SortRecord as _, Sorter};
 
 use crate::{
-    ReadOsmError,
+    failed::Failed,
     outlines::{
-        located_ways::{LocatedWay, LocatedWays},
+        located_ways::LocatedWays,
         records::{MemberRecord, OutlineLine, OutlineWayRecord},
     },
     reading::Reading,
@@ -17,27 +17,19 @@ pub(crate) fn hand_parts<'a>(
     reading: &Reading<'a>,
     mut members: SpoolReader<'a>,
     mut located: LocatedWays<'a>,
-) -> Result<Sorter<'a, OutlineWayRecord>, ReadOsmError> {
-    let failed = |error| reading.scratch_failed(error);
+) -> Result<Sorter<'a, OutlineWayRecord>, Failed> {
     let mut parts = Sorter::new(reading.request.scratch, reading.shares().way_ids);
-    let mut way: Option<LocatedWay> = None;
     let mut count = 0;
-    while let Some(record) = members.next(MemberRecord::decode).map_err(failed)? {
+    while let Some(record) = members.next(MemberRecord::decode)? {
         let MemberRecord { member, object_number } = record;
         let way_id = member.way_id;
         reading.check_stop_at(count)?;
         count += 1;
-        while way.as_ref().is_none_or(|way| way.way_id < way_id) {
-            way = located.next(reading)?;
-            if way.is_none() {
-                break;
-            }
-        }
-        let line = match &way {
-            Some(way) if way.way_id == way_id => OutlineLine::of(way.places.clone()),
-            _ => OutlineLine::NoWay,
+        let line = match located.find(way_id)? {
+            Some(way) => OutlineLine::of(way.places.clone()),
+            None => OutlineLine::NoWay,
         };
-        parts.push(OutlineWayRecord { object_number, member, line }).map_err(failed)?;
+        parts.push(OutlineWayRecord { object_number, member, line })?;
     }
     Ok(parts)
 }

@@ -1,6 +1,6 @@
 //! Makes areas from objects and the ways of their outlines.
 
-use std::collections::HashSet;
+use std::{collections::HashSet, io};
 
 use corniche_areas::{
     Area, AreaClass, AreaObject, Assembled, Coastline, OutlineError, OutlineWay, Polygon, assemble,
@@ -11,11 +11,12 @@ use rayon::prelude::*;
 
 use super::{over_seam, summary::AreaSummary};
 use crate::{
-    AreaLoss, Defect, ReadOsmError,
+    AreaLoss, Defect,
     ahead::Ahead,
+    failed::Failed,
     layer_sink::LayerSink,
     looked::check_held,
-    outlines::records::{Known, OutlineLine, OutlineWayRecord, degrees_of, to_point},
+    outlines::records::{Known, OutlineWayRecord, degrees_of, to_point},
     read_request::Placing,
     reading::Reading,
     spool::SpoolReader,
@@ -35,7 +36,7 @@ pub(crate) fn make_areas(
     summary: &mut AreaSummary,
     sink: &mut dyn LayerSink<Area, AreaSummary>,
     on_defect: &mut dyn FnMut(Defect),
-) -> Result<(), ReadOsmError> {
+) -> Result<(), Failed> {
     let pool = reading.request.pool;
     let threads = pool.current_num_threads();
     let mut all_parts = Ahead::new(parts);
@@ -45,10 +46,11 @@ pub(crate) fn make_areas(
         let mut batch = Vec::new();
         let mut points = 0;
         while batch.len() < threads * OBJECTS_PER_THREAD && points < threads * POINTS_PER_THREAD {
-            let next = known.next(Known::decode).map_err(|error| reading.scratch_failed(error))?;
+            let next = known.next(Known::decode)?;
             let Some(known) = next else { break };
-            let parts = parts_of(reading, &mut all_parts, number)?;
-            points += parts.iter().map(points_of).sum::<usize>();
+            let parts = parts_of(&mut all_parts, number)?;
+            points +=
+                parts.iter().flat_map(OutlineWayRecord::points).map(<[_]>::len).sum::<usize>();
             batch.push((known, parts));
             number += 1;
         }
@@ -80,18 +82,12 @@ pub(crate) fn make_areas(
     }
 }
 
-fn points_of(part: &OutlineWayRecord) -> usize {
-    if let OutlineLine::Points(points) = &part.line { points.len() } else { 0 }
-}
-
 fn parts_of(
-    reading: &Reading<'_>,
     parts: &mut Ahead<Sorted<'_, OutlineWayRecord>>,
     number: u64,
-) -> Result<Vec<OutlineWayRecord>, ReadOsmError> {
-    let failed = |error| reading.scratch_failed(error);
+) -> io::Result<Vec<OutlineWayRecord>> {
     let mut own = Vec::new();
-    while parts.peek().map_err(failed)?.is_some_and(|part| part.object_number == number) {
+    while parts.peek()?.is_some_and(|part| part.object_number == number) {
         own.extend(parts.take_next());
     }
     Ok(own)
@@ -143,14 +139,8 @@ fn coastlines(
 ) -> Result<Vec<Coastline>, AreaLoss> {
     let mut lines = Vec::new();
     for part in parts {
-        let points = match &part.line {
-            OutlineLine::Points(points) => points,
-            OutlineLine::NoWay => return Err(AreaLoss::MissingWays),
-            OutlineLine::NoNodes => return Err(AreaLoss::MissingNodes),
-            OutlineLine::OutOfRange => return Err(AreaLoss::OutOfRange),
-        };
         let positions_deg: Vec<[f64; 2]> =
-            points.iter().copied().map(to_point).map(degrees_of).collect();
+            part.points()?.iter().copied().map(to_point).map(degrees_of).collect();
         let placed = (placing.place)(&positions_deg);
         let runs = placed
             .split(Option::is_none)
@@ -173,16 +163,13 @@ fn try_making(
     let mut ways: Vec<Line> = Vec::new();
     for part in parts {
         let is_inner = part.member.is_inner;
-        match &part.line {
-            OutlineLine::Points(points) => {
-                ways.push(Line {
-                    points: points.iter().copied().map(to_point).collect(),
-                    is_inner,
-                });
+        match part.points() {
+            Ok(points) => {
+                let points = points.iter().copied().map(to_point).collect();
+                ways.push(Line { points, is_inner });
             }
-            OutlineLine::NoWay => missing += 1,
-            OutlineLine::NoNodes => return Err(AreaLoss::MissingNodes),
-            OutlineLine::OutOfRange => return Err(AreaLoss::OutOfRange),
+            Err(AreaLoss::MissingWays) => missing += 1,
+            Err(loss) => return Err(loss),
         }
     }
     over_seam::join(&mut ways.iter_mut().map(|way| &mut way.points).collect::<Vec<_>>());

@@ -31,14 +31,3 @@ pub struct KeptAreas {
     /// The true area of the objects, square metres. Where areas overlap, each counts.
     pub area_m2: f64,
 }
-
-impl AreaSummary {
-    /// Checks that every object is counted once.
-    ///
-    /// # Panics
-    /// When one is not.
-    pub fn check_invariants(&self) {
-        let kept: u64 = self.kept.values().map(|kept| kept.areas).sum();
-        assert_eq!(self.objects, kept + self.lost.values().sum::<u64>(), "each object counts once");
-    }
-}

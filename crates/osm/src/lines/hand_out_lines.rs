@@ -9,7 +9,8 @@ use super::{
     summary::LineSummary,
 };
 use crate::{
-    Defect, ReadOsmError,
+    Defect,
+    failed::Failed,
     layer_sink::{LayerSink, NamesSink},
     looked::check_held,
     outlines::{found::OutlineObjects, located_ways::LocatedWays, records::Known},
@@ -23,16 +24,15 @@ pub(crate) fn hand_out_lines<'a>(
     (objects, located): (OutlineObjects<'a>, LocatedWays<'a>),
     (sink, on_defect): (&mut dyn LayerSink<ClassedLine, LineSummary>, &mut dyn FnMut(Defect)),
     on_name: Option<&mut NamesSink<'_>>,
-) -> Result<(), ReadOsmError> {
-    let failed = |error| reading.scratch_failed(error);
+) -> Result<(), Failed> {
     // Of objects with one id the first stays, which is told as for areas.
     let OutlineObjects { mut known, count, members, defects, held_bytes, .. } = objects;
     sink.begin();
-    defects.tell(on_defect).map_err(failed)?;
+    defects.tell(on_defect)?;
     check_held(reading, held_bytes + count)?;
     let mut classes = Vec::with_capacity(count as usize);
     let mut names = on_name.map(|on_name| LineNames { objects: Vec::new(), on_name });
-    while let Some(object) = known.next(Known::decode).map_err(failed)? {
+    while let Some(object) = known.next(Known::decode)? {
         classes.push(object.class.unwrap_or(NO_CLASS));
         if let Some(names) = &mut names {
             names.objects.push(object);

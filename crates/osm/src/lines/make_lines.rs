@@ -8,8 +8,9 @@ use corniche_store::SortRecord as _;
 
 use super::{classed_line::ClassedLine, line_names::LineNames, summary::LineSummary};
 use crate::{
-    Defect, ReadOsmError,
+    Defect,
     ahead::Ahead,
+    failed::Failed,
     layer_sink::LayerSink,
     line_loss::LineLoss,
     location,
@@ -36,12 +37,11 @@ pub(crate) fn make_lines(
     summary: &mut LineSummary,
     (sink, on_defect): (&mut dyn LayerSink<ClassedLine, LineSummary>, &mut dyn FnMut(Defect)),
     mut names: Option<LineNames<'_, '_>>,
-) -> Result<(), ReadOsmError> {
+) -> Result<(), Failed> {
     let records = Ahead::new(iter::from_fn(|| members.next(MemberRecord::decode).transpose()));
     let mut members = Members { records, objects: Vec::new() };
-    let mut way: Option<LocatedWay> = None;
     let (mut count, all) = (0, located.count);
-    while let Some((way_id, class)) = members.next_way(reading, classes)? {
+    while let Some((way_id, class)) = members.next_way(classes)? {
         reading.check_stop_at(count)?;
         if count.is_multiple_of(WAYS_TO_TELL) {
             // Relations name ways, too, that the file does not have.
@@ -50,20 +50,14 @@ pub(crate) fn make_lines(
         count += 1;
         let Some(class) = layer.class(class) else { continue };
         summary.ways += 1;
-        while way.as_ref().is_none_or(|way| way.way_id < way_id) {
-            way = located.next(reading)?;
-            if way.is_none() {
-                break;
-            }
-        }
-        let made = match &way {
-            Some(way) if way.way_id == way_id => parts_of(reading, way, class).inspect(|_| {
+        let made = match located.find(way_id)? {
+            Some(way) => parts_of(reading, way, class).inspect(|_| {
                 tell_gaps(way, on_defect);
                 if let Some(names) = &mut names {
                     names.tell(layer, way, &members.objects);
                 }
             }),
-            _ => Err(LineLoss::MissingWay),
+            None => Err(LineLoss::MissingWay),
         };
         match made {
             Ok(parts) => {
@@ -91,15 +85,11 @@ struct Members<I: Iterator> {
 
 impl<I: Iterator<Item = io::Result<MemberRecord>>> Members<I> {
     /// The next way and the number of the most important of the classes that objects give it.
-    fn next_way(
-        &mut self,
-        reading: &Reading<'_>,
-        classes: &[u8],
-    ) -> Result<Option<(i64, u8)>, ReadOsmError> {
+    fn next_way(&mut self, classes: &[u8]) -> io::Result<Option<(i64, u8)>> {
         let Self { records, objects } = self;
         let mut way: Option<(i64, u8)> = None;
         objects.clear();
-        while let Some(record) = records.peek().map_err(|error| reading.scratch_failed(error))? {
+        while let Some(record) = records.peek()? {
             let own = classes.get(record.object_number as usize).copied().unwrap_or(NO_CLASS);
             let way_id = record.member.way_id;
             let (id, class) = way.get_or_insert((way_id, NO_CLASS));
@@ -164,11 +154,10 @@ fn parts_of(
     if !parts.is_empty() {
         return Ok(parts);
     }
-    let valid: Vec<&location::Location> =
-        way.places.iter().filter(|place| is_valid(place)).collect();
+    let valid = way.places.iter().filter(|place| is_valid(place)).count();
     Err(if way.places.iter().any(is_missing) {
         LineLoss::MissingNodes
-    } else if valid.len() < way.places.len() || valid.len() < 2 {
+    } else if valid < way.places.len() || valid < 2 {
         LineLoss::OutOfRange
     } else {
         LineLoss::OutsideProjection

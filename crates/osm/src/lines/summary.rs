@@ -18,14 +18,3 @@ pub struct LineSummary {
     /// Ways that were left out.
     pub lost: BTreeMap<LineLoss, u64>,
 }
-
-impl LineSummary {
-    /// Checks that every way is counted once.
-    ///
-    /// # Panics
-    /// When one is not.
-    pub fn check_invariants(&self) {
-        let kept: u64 = self.kept.values().sum();
-        assert_eq!(self.ways, kept + self.lost.values().sum::<u64>(), "each way counts once");
-    }
-}

@@ -7,10 +7,10 @@ use super::{
     judge::{Judge, OfBlock},
 };
 use crate::{
-    ReadOsmError,
-    blobs::{Decoding, decode},
+    blobs::decode,
     block::Block,
     extracts::{Extracts, TOO_MUCH_FOUND},
+    failed::Failed,
     looked::{Looked, LookedAt},
     reading::{Reading, Step},
 };
@@ -24,14 +24,10 @@ pub(crate) fn find_objects<R: Read + Seek>(
     outlines: &mut [Outlines<'_>],
     with_ways: bool,
     later_bytes: u64,
-) -> Result<LookedAt, ReadOsmError> {
+) -> Result<LookedAt, Failed> {
     let mut looked_at = LookedAt::default();
     let all_bytes = file.bytes_of(numbers) + later_bytes;
-    let decoding = Decoding {
-        pool: reading.request.pool,
-        should_stop: reading.should_stop,
-        on_bytes: &|bytes| reading.tell(Step::Ways, bytes, all_bytes),
-    };
+    let on_bytes = &|bytes| reading.tell(Step::Ways, bytes, all_bytes);
     let wanted: Vec<_> = outlines.iter().map(|outlines| outlines.wanted).collect();
     let scan = |message: Vec<u8>, most_bytes| {
         let block = Block::new(&message);
@@ -58,7 +54,7 @@ pub(crate) fn find_objects<R: Read + Seek>(
         }
         Ok((looked, found))
     };
-    file.for_each_block(numbers, &decoding, scan, |[file, number], (looked, found)| {
+    file.for_each_block(reading, numbers, on_bytes, scan, |[file, number], (looked, found)| {
         looked_at.take(reading, [file, number], looked)?;
         for (outlines, of_block) in outlines.iter_mut().zip(found) {
             outlines.take(reading, file as u32, of_block, true)?;

@@ -1,5 +1,7 @@
 //! What is found of one kind of outlined objects while an extract is read.
 
+use std::io;
+
 use corniche_store::Sorter;
 
 use super::{
@@ -10,12 +12,13 @@ use super::{
     wanted::Wanted,
 };
 use crate::{
-    AreaLoss, Defect, ExtractSummary, ReadOsmError,
+    AreaLoss, Defect, ExtractSummary,
     deferred::Deferred,
+    failed::Failed,
     looked::check_held,
     number_nodes::{NumberedNodes, number_nodes},
     reading::Reading,
-    records::{SoughtId, WayRecord, age},
+    records::{SoughtId, WayRecord},
     sought_ids::SoughtIds,
     spool::{Spool, SpoolReader},
     way_facts::WayFacts,
@@ -44,7 +47,7 @@ impl<'a> Outlines<'a> {
         let (shares, scratch) = (reading.shares(), reading.request.scratch);
         let mut facts: Box<[u8]> = Box::default();
         if reading.is_of_several() {
-            facts = WayFacts::of(ExtractSummary::default(), Vec::new()).to_bytes();
+            facts = WayFacts::default().to_bytes();
         }
         Self {
             wanted,
@@ -67,9 +70,7 @@ impl<'a> Outlines<'a> {
         file: u32,
         of_block: OfBlock,
         is_before_ways: bool,
-    ) -> Result<(), ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
-        let age = |version| if reading.is_of_several() { age(version) } else { 0 };
+    ) -> Result<(), Failed> {
         self.held_bytes += of_block.held_bytes;
         check_held(reading, self.held_bytes)?;
         for id in of_block.open_ways {
@@ -78,24 +79,18 @@ impl<'a> Outlines<'a> {
             self.defects.push(&Defect::LostArea { is_relation, id, loss });
         }
         for mut object in of_block.objects {
-            object.order = self.objects_count;
-            self.objects_count += 1;
-            object.file = file;
-            object.age = age(object.version);
+            object.origin.place(reading, file, &mut self.objects_count);
             if is_before_ways {
                 for way in &object.ways {
-                    self.way_ids.push(SoughtId(way.way_id)).map_err(failed)?;
+                    self.way_ids.push(SoughtId(way.way_id))?;
                 }
             }
-            self.objects.push(object).map_err(failed)?;
+            self.objects.push(object)?;
         }
         for mut way in of_block.ways {
-            way.order = self.ways_count;
-            self.ways_count += 1;
-            way.file = file;
-            way.age = age(way.version);
+            way.origin.place(reading, file, &mut self.ways_count);
             way.facts.clone_from(&self.facts);
-            self.ways.push(way).map_err(failed)?;
+            self.ways.push(way)?;
         }
         Ok(())
     }
@@ -104,19 +99,18 @@ impl<'a> Outlines<'a> {
     pub(crate) fn number(
         self,
         reading: &Reading<'a>,
-    ) -> Result<(OutlineObjects<'a>, NumberedNodes<'a>), ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
+    ) -> Result<(OutlineObjects<'a>, NumberedNodes<'a>), Failed> {
         let Self { objects, ways, open_ways, mut defects, held_bytes, .. } = self;
         let on_defect = &mut |defect: Defect| defects.push(&defect);
         let NumberedObjects { known, count, duplicates, members } =
             number_objects(reading, objects, on_defect)?;
         let kept = Spool::new(reading.request.scratch, reading.shares().spool);
-        let members = members.finish().map_err(failed)?;
-        let mut ways = MemberWays::new(ways.finish().map_err(failed)?, members, kept);
+        let members = members.finish()?;
+        let mut ways = MemberWays::new(ways.finish()?, members, kept);
         // What these count is of roads.
         let none = &mut ExtractSummary::default();
         let numbered = number_nodes(reading, &mut ways, none, on_defect, None)?;
-        let members = ways.into_members().map_err(failed)?.read();
+        let members = ways.into_members()?.read();
         let known = known.read();
         let objects =
             OutlineObjects { known, count, duplicates, members, open_ways, defects, held_bytes };
@@ -124,11 +118,8 @@ impl<'a> Outlines<'a> {
     }
 
     /// The ways that are to be looked for; from now on none is added.
-    pub(crate) fn take_way_ids(
-        &mut self,
-        reading: &Reading<'a>,
-    ) -> Result<SoughtIds<'a>, ReadOsmError> {
-        SoughtIds::of(reading, std::mem::replace(&mut self.way_ids, reading.sorter(0)))
+    pub(crate) fn take_way_ids(&mut self, reading: &Reading<'a>) -> io::Result<SoughtIds<'a>> {
+        SoughtIds::of(std::mem::replace(&mut self.way_ids, reading.sorter(0)))
     }
 }
 

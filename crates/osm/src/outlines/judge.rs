@@ -9,11 +9,10 @@ use super::{
 };
 use crate::{
     block::BlockWay,
-    location::{Location, location_from_nano},
-    records::WayRecord,
+    location::Location,
+    records::{Origin, WayRecord},
     search::Search,
     text::Text,
-    versions::known_version,
     way_bytes::node_bytes,
 };
 
@@ -101,19 +100,12 @@ impl OfBlock {
 
     /// Keeps a way of an outline.
     pub(crate) fn keep(&mut self, way: &BlockWay<'_, '_>) {
-        self.node_ids.clear();
-        self.node_ids.extend(way.refs());
-        // The block was checked: one for each node, or none at all.
-        let locations = way.places_nano_deg().map(|[lon, lat]| location_from_nano(lon, lat));
-        self.located.extend(self.node_ids.iter().copied().zip(locations));
+        way.take_nodes(&mut self.node_ids, &mut self.located);
         // Ids and places, each sorted twice.
         self.held_bytes += (WAY_BYTES + 48 * self.node_ids.len()) as u64;
         self.ways.push(WayRecord {
             way_id: way.id,
-            age: 0,
-            order: 0,
-            version: known_version(way.info.version).unwrap_or_default(),
-            file: 0,
+            origin: Origin::of_version(way.info.version),
             bytes: node_bytes(&self.node_ids),
             facts: Box::default(),
         });
@@ -166,10 +158,7 @@ impl OfBlock {
         self.held_bytes += (OBJECT_BYTES + name.len() + 80 * ways.len()) as u64;
         self.objects.push(ObjectRecord {
             object,
-            age: 0,
-            order: 0,
-            version: known_version(version).unwrap_or_default(),
-            file: 0,
+            origin: Origin::of_version(version),
             class,
             is_coastline,
             name,

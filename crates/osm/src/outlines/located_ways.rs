@@ -1,14 +1,14 @@
 //! Ways of outlines with the places of their nodes.
 
+use std::io;
+
 use corniche_store::Sorted;
 
 use crate::{
-    ReadOsmError,
     location::Location,
-    reading::Reading,
+    number_nodes::take_numbered,
     records::Stop,
     spool::{SpoolReader, damaged},
-    wire::{varint, zigzag},
 };
 
 /// Ways in order of their ids, each with the places of its nodes.
@@ -17,6 +17,8 @@ pub(crate) struct LocatedWays<'a> {
     pub(crate) stops: Sorted<'a, Stop>,
     /// How many ways there are.
     pub(crate) count: u64,
+    /// The way that was read last.
+    pub(crate) last: Option<LocatedWay>,
 }
 
 pub(crate) struct LocatedWay {
@@ -27,24 +29,25 @@ pub(crate) struct LocatedWay {
 }
 
 impl LocatedWays<'_> {
-    pub(crate) fn next(
-        &mut self,
-        reading: &Reading<'_>,
-    ) -> Result<Option<LocatedWay>, ReadOsmError> {
-        let failed = |error| reading.scratch_failed(error);
-        let take_way = |bytes: &mut &[u8]| {
-            let (way_id, nodes) = (zigzag(varint(bytes).ok()?), varint(bytes).ok()?);
-            // Nothing is asked of what they are.
-            let length = varint(bytes).ok()?.try_into().ok()?;
-            *bytes = bytes.get(length..)?;
-            Some((way_id, nodes))
-        };
-        let Some((way_id, nodes)) = self.ways.next(take_way).map_err(failed)? else {
-            return Ok(None);
-        };
+    /// The way with this id, if it is one of them. Ways are asked for in ascending order of their ids.
+    pub(crate) fn find(&mut self, way_id: i64) -> io::Result<Option<&LocatedWay>> {
+        while self.last.as_ref().is_none_or(|way| way.way_id < way_id) {
+            self.last = self.next()?;
+            if self.last.is_none() {
+                break;
+            }
+        }
+        Ok(self.last.as_ref().filter(|way| way.way_id == way_id))
+    }
+
+    fn next(&mut self) -> io::Result<Option<LocatedWay>> {
+        // Nothing is asked of what they are.
+        let take =
+            |bytes: &mut &[u8]| take_numbered(bytes).map(|(way_id, nodes, _)| (way_id, nodes));
+        let Some((way_id, nodes)) = self.ways.next(take)? else { return Ok(None) };
         let (mut places, mut is_shared) = (Vec::new(), Vec::new());
         for _ in 0..nodes {
-            let stop = self.stops.next().ok_or_else(damaged).map_err(failed)?.map_err(failed)?;
+            let stop = self.stops.next().ok_or_else(damaged)??;
             places.push(stop.location);
             is_shared.push(stop.is_shared());
         }

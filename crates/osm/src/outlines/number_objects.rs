@@ -6,6 +6,7 @@ use corniche_store::Sorter;
 use super::records::{MemberRecord, ObjectRecord};
 use crate::{
     AreaLoss, Defect, ReadOsmError,
+    failed::Failed,
     reading::Reading,
     spool::Spool,
     versions::{known_version, two_versions},
@@ -28,9 +29,8 @@ pub(crate) fn number_objects<'a>(
     reading: &Reading<'a>,
     objects: Sorter<'a, ObjectRecord>,
     on_defect: &mut dyn FnMut(Defect),
-) -> Result<NumberedObjects<'a>, ReadOsmError> {
+) -> Result<NumberedObjects<'a>, Failed> {
     let (request, shares) = (reading.request, reading.shares());
-    let failed = |error| reading.scratch_failed(error);
     let mut numbered = NumberedObjects {
         known: Spool::new(request.scratch, shares.spool),
         count: 0,
@@ -38,14 +38,14 @@ pub(crate) fn number_objects<'a>(
         members: Sorter::new(request.scratch, shares.way_ids),
     };
     let mut last: Option<(AreaObject, u32, Option<i32>)> = None;
-    for (count, object) in (0..).zip(objects.finish().map_err(failed)?) {
+    for (count, object) in (0..).zip(objects.finish()?) {
         reading.check_stop_at(count)?;
-        let object = object.map_err(failed)?;
-        let version = known_version(object.version);
+        let object = object?;
+        let version = known_version(object.origin.version);
         if let Some((before, file, first)) = last
             && before == object.object
         {
-            if file != object.file {
+            if file != object.origin.file {
                 // That of another extract, which is older or the same.
                 continue;
             }
@@ -54,19 +54,19 @@ pub(crate) fn number_objects<'a>(
                 && first != second
             {
                 let reason = two_versions(kind, id, [first, second]);
-                return Err(ReadOsmError::History { path: request.extract(file), reason });
+                return Err(ReadOsmError::History { path: request.extract(file), reason }.into());
             }
             numbered.duplicates += 1;
             let (is_relation, loss) = (kind == "relation", AreaLoss::Duplicate);
             on_defect(Defect::LostArea { is_relation, id, loss });
             continue;
         }
-        last = Some((object.object, object.file, version));
+        last = Some((object.object, object.origin.file, version));
         let (known, ways) = object.into_known();
-        numbered.known.push(|bytes| known.encode(bytes)).map_err(failed)?;
+        numbered.known.push(|bytes| known.encode(bytes))?;
         for &member in &ways {
             let record = MemberRecord { member, object_number: numbered.count };
-            numbered.members.push(record).map_err(failed)?;
+            numbered.members.push(record)?;
         }
         numbered.count += 1;
     }

@@ -5,22 +5,19 @@ use corniche_geom::LatticePoint;
 use corniche_store::SortRecord;
 
 use crate::{
+    AreaLoss,
     location::{self, Location},
-    wire::{push_varint, to_zigzag, varint, zigzag},
+    records::Origin,
+    wire::{
+        push_bytes, push_signed, push_varint, take_array, take_bytes, take_number, take_signed,
+    },
 };
 
 /// A way or relation with the tags of an area, or a coastline. Ways come first, each kind by id.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct ObjectRecord {
     pub(crate) object: AreaObject,
-    /// Where an object may be in several extracts: [`crate::records::age`]. Else 0.
-    pub(crate) age: u32,
-    /// How many of these come before it in the extracts.
-    pub(crate) order: u64,
-    /// 0 if it is not known.
-    pub(crate) version: i32,
-    /// Which extract it is from.
-    pub(crate) file: u32,
+    pub(crate) origin: Origin,
     /// The number of its class; `None` of a coastline that is no area.
     pub(crate) class: Option<u8>,
     pub(crate) is_coastline: bool,
@@ -87,6 +84,18 @@ impl OutlineLine {
     }
 }
 
+impl OutlineWayRecord {
+    /// The places of its nodes, or why there is no area or line with it.
+    pub(crate) fn points(&self) -> Result<&[Location], AreaLoss> {
+        match &self.line {
+            OutlineLine::NoWay => Err(AreaLoss::MissingWays),
+            OutlineLine::NoNodes => Err(AreaLoss::MissingNodes),
+            OutlineLine::OutOfRange => Err(AreaLoss::OutOfRange),
+            OutlineLine::Points(points) => Ok(points),
+        }
+    }
+}
+
 /// A place as a point of the lattice of 1e-7 degrees, and back.
 pub(crate) fn to_point([lon, lat]: Location) -> LatticePoint {
     LatticePoint::new(lon.into(), lat.into())
@@ -108,13 +117,12 @@ impl ObjectRecord {
 impl Member {
     fn encode(self, bytes: &mut Vec<u8>) {
         bytes.push(u8::from(self.is_inner));
-        push_varint(bytes, to_zigzag(self.way_id));
+        push_signed(bytes, self.way_id);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let (&is_inner, rest) = bytes.split_first()?;
-        *bytes = rest;
-        Some(Self { way_id: zigzag(varint(bytes).ok()?), is_inner: is_inner == 1 })
+        let [is_inner] = take_array(bytes)?;
+        Some(Self { way_id: take_signed(bytes)?, is_inner: is_inner == 1 })
     }
 }
 
@@ -129,18 +137,14 @@ impl Known {
         // Classes are few.
         let class = self.class.unwrap_or(NO_CLASS);
         bytes.extend([is_relation, u8::from(self.is_coastline), class]);
-        push_varint(bytes, to_zigzag(id));
-        push_varint(bytes, self.name.len() as u64);
-        bytes.extend(self.name.as_bytes());
+        push_signed(bytes, id);
+        push_bytes(bytes, self.name.as_bytes());
     }
 
     pub(crate) fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let (&[is_relation, is_coastline, class], rest) = bytes.split_first_chunk::<3>()?;
-        *bytes = rest;
-        let id = zigzag(varint(bytes).ok()?);
-        let length = varint(bytes).ok()?.try_into().ok()?;
-        let (name, rest) = bytes.split_at_checked(length)?;
-        *bytes = rest;
+        let [is_relation, is_coastline, class] = take_array(bytes)?;
+        let id = take_signed(bytes)?;
+        let name = take_bytes(bytes)?;
         Some(Self {
             object: if is_relation == 1 { AreaObject::Relation(id) } else { AreaObject::Way(id) },
             class: (class != NO_CLASS).then_some(class),
@@ -152,27 +156,20 @@ impl Known {
 
 impl SortRecord for ObjectRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        let Self { object, age, order, version, file, class, is_coastline, name, ways } = self;
+        let Self { object, origin, class, is_coastline, name, ways } = self;
         let (class, is_coastline) = (*class, *is_coastline);
         Known { object: *object, class, is_coastline, name: name.clone() }.encode(bytes);
-        push_varint(bytes, (*age).into());
-        push_varint(bytes, *order);
-        push_varint(bytes, to_zigzag((*version).into()));
-        push_varint(bytes, (*file).into());
+        origin.encode(bytes);
         push_varint(bytes, ways.len() as u64);
         ways.iter().for_each(|way| way.encode(bytes));
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
         let Known { object, class, is_coastline, name } = Known::decode(bytes)?;
-        let age = varint(bytes).ok()?.try_into().ok()?;
-        let order = varint(bytes).ok()?;
-        let version = zigzag(varint(bytes).ok()?).try_into().ok()?;
-        let file = varint(bytes).ok()?.try_into().ok()?;
-        let count = varint(bytes).ok()?;
+        let origin = Origin::decode(bytes)?;
+        let count: u64 = take_number(bytes)?;
         let ways: Option<_> = (0..count).map(|_| Member::decode(bytes)).collect();
-        let ways = ways?;
-        Some(Self { object, age, order, version, file, class, is_coastline, name, ways })
+        Some(Self { object, origin, class, is_coastline, name, ways: ways? })
     }
 
     fn extra_bytes(&self) -> usize {
@@ -188,7 +185,7 @@ impl SortRecord for MemberRecord {
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
         let member = Member::decode(bytes)?;
-        Some(Self { member, object_number: varint(bytes).ok()? })
+        Some(Self { member, object_number: take_number(bytes)? })
     }
 }
 
@@ -207,27 +204,25 @@ impl SortRecord for OutlineWayRecord {
         let mut last = [0_i32; 2];
         for point in points {
             for (part, last) in point.iter().zip(&mut last) {
-                push_varint(bytes, to_zigzag(i64::from(*part) - i64::from(*last)));
+                push_signed(bytes, i64::from(*part) - i64::from(*last));
                 *last = *part;
             }
         }
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let object_number = varint(bytes).ok()?;
+        let object_number = take_number(bytes)?;
         let member = Member::decode(bytes)?;
-        let (&kind, rest) = bytes.split_first()?;
-        *bytes = rest;
-        let line = match kind {
-            0 => OutlineLine::NoWay,
-            1 => OutlineLine::NoNodes,
-            2 => OutlineLine::OutOfRange,
+        let line = match take_array(bytes)? {
+            [0] => OutlineLine::NoWay,
+            [1] => OutlineLine::NoNodes,
+            [2] => OutlineLine::OutOfRange,
             _ => {
-                let count = varint(bytes).ok()?;
+                let count: u64 = take_number(bytes)?;
                 let mut last = [0_i32; 2];
                 let mut next = || -> Option<Location> {
                     for last in &mut last {
-                        let step = zigzag(varint(bytes).ok()?);
+                        let step = take_signed(bytes)?;
                         *last = i64::from(*last).checked_add(step)?.try_into().ok()?;
                     }
                     Some(last)
@@ -240,10 +235,7 @@ impl SortRecord for OutlineWayRecord {
     }
 
     fn extra_bytes(&self) -> usize {
-        match &self.line {
-            OutlineLine::Points(points) => size_of_val(&**points) + 16,
-            OutlineLine::NoWay | OutlineLine::NoNodes | OutlineLine::OutOfRange => 0,
-        }
+        self.points().map_or(0, |points| size_of_val(points) + 16)
     }
 }
 

@@ -26,10 +26,7 @@ fn records_come_back() {
     for (object, (class, is_coastline)) in objects.into_iter().zip(classes) {
         comes_back(&ObjectRecord {
             object,
-            age: 3,
-            order: 1 << 40,
-            version: -1,
-            file: 2,
+            origin: Origin { age: 3, order: 1 << 40, version: -1, file: 2 },
             class,
             is_coastline,
             name: "Füssen".into(),

@@ -83,7 +83,7 @@ impl HasId for WayRecord {
     }
 
     fn age(&self) -> u32 {
-        self.age
+        self.origin.age
     }
 }
 

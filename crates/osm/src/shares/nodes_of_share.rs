@@ -28,7 +28,7 @@ use crate::{
 /// as many shares. If the places are there already, nothing is read. `on_progress` counts the file's bytes once.
 ///
 /// # Errors
-/// As [`read_roads`](crate::read_roads) for what is wrong in these blobs; [`ReadOsmError::Kept`], also if ways are not there.
+/// As [`read_extract`](crate::read_extract) for what is wrong in these blobs; [`ReadOsmError::Kept`], also if ways are not there.
 pub fn keep_nodes(
     request: &ReadRequest<'_>,
     share: Share,
@@ -89,7 +89,7 @@ fn needed_nodes<'a>(
     way_blocks: &[u32],
     range: IdRange,
 ) -> Result<Sorter<'a, SoughtId>, ReadOsmError> {
-    let failed = |error| reading.scratch_failed(error);
+    let failed = |error: std::io::Error| reading.failed(error);
     let shares = reading.shares();
     let mut needed = Sorter::new(reading.request.scratch, shares.ways + shares.mentions);
     let of = way_blocks.len() as u16;
@@ -120,10 +120,11 @@ fn keep_places<R: std::io::Read + std::io::Seek>(
     let most =
         (reading.shares().ids / (bytes_per_node(reading.precedence(), 1) + 1)).max(1) as usize;
     let all_bytes: u64 = own.iter().map(|blob| file.size(blob.number)).sum();
-    let mut needed = SoughtIds::of(reading, needed)?;
+    let failed = |error| reading.failed(error);
+    let mut needed = SoughtIds::of(needed).map_err(failed)?;
     let mut done_bytes = 0;
     loop {
-        let ids = needed.next(reading, most)?;
+        let ids = needed.next(reading, most).map_err(|error| reading.failed(error))?;
         if ids.is_empty() {
             return Ok(());
         }
@@ -136,7 +137,8 @@ fn keep_places<R: std::io::Read + std::io::Seek>(
             is_seen[number] = true;
             places.set(number, location, version);
         };
-        done_bytes += read_places(reading, file, own, &ids, &on_bytes, take)?;
+        let read = read_places(reading, file, own, &ids, &on_bytes, take);
+        done_bytes += read.map_err(|error| reading.failed(error))?;
         for (number, &node_id) in
             ids.ids().iter().enumerate().filter(|&(number, _)| is_seen[number])
         {

@@ -14,6 +14,7 @@ use crate::{
     Defect, ExtractSummary, ReadOsmError,
     ahead::Ahead,
     deferred::Deferred,
+    failed::Failed,
     hand_out::{RoadWays, hand_out_roads},
     kept_error::KeptError,
     layer_sink::LayerSink,
@@ -29,10 +30,10 @@ use crate::{
 };
 
 /// Hands out the roads of an extract whose ways and nodes were kept in so many shares: the same roads, defects and counts, in the same
-/// order, as [`read_roads`](crate::read_roads) does. The extract itself is not read, `request.path` only names it in messages.
+/// order, as [`read_extract`](crate::read_extract) does. The extract itself is not read, `request.path` only names it in messages.
 ///
 /// # Errors
-/// [`ReadOsmError::Kept`] if not all is there, and what [`read_roads`](crate::read_roads) finds by comparing ways with each other.
+/// [`ReadOsmError::Kept`] if not all is there, and what [`read_extract`](crate::read_extract) finds by comparing ways with each other.
 pub fn read_kept_roads(
     request: &ReadRequest<'_>,
     of: u16,
@@ -74,9 +75,9 @@ pub fn read_kept_roads(
         check_held(&reading, held_bytes)?;
         let kind = kept.kinds.defects;
         for defect in BlockReader::new(kept, kind, share, record.defect_blocks) {
-            defects.push(&defect.map_err(|error| reading.scratch_failed(error))?);
+            defects.push(&defect.map_err(|error| reading.failed(error))?);
         }
-        add_summary(&mut summary, record.counts.into());
+        add_summary(&mut summary, record.counts);
     }
     reading.tell(Step::Ways, 1, 1);
     let with_blocks = || shares.iter().copied().zip(&blocks);
@@ -91,19 +92,22 @@ pub fn read_kept_roads(
     let mut nodes = KeptNodes { places: Ahead::new(Merged::new(places.map_err(failed)?)) };
     let ways = Merged::new(ways.collect());
     let on_duplicate = &mut |defect| defects.push(&defect);
-    let numbered = number_nodes(&reading, ways, &mut summary, on_duplicate, None)?;
+    let numbered = number_nodes(&reading, ways, &mut summary, on_duplicate, None)
+        .map_err(|error| reading.failed(error))?;
     let NumberedNodes { ways, mentions, left_out, ways_count, mentions_count, duplicates } =
         numbered;
-    let mentions = mentions.finish().map_err(|error| reading.scratch_failed(error))?;
+    let mentions = mentions.finish().map_err(|error| reading.failed(error))?;
     let questions = vec![NodeQuestions { mentions, mentions_count, left_out }];
     let located = Merged::new(located.collect());
     let on_conflict = &mut |_, defect| defects.push(&defect);
-    let answers = locate_nodes(&reading, &mut nodes, questions, located, on_conflict)?;
+    let answers = locate_nodes(&reading, &mut nodes, questions, located, on_conflict)
+        .map_err(|error| reading.failed(error))?;
     // There is one for each question.
     let Some(nodes) = answers.into_iter().next() else { return Ok(()) };
     let ways = (ways.read(), ways_count, duplicates);
-    let found = RoadWays::of(&reading, ways, nodes, summary, defects)?;
-    hand_out_roads(&reading, found, sink, on_defect)
+    let found =
+        RoadWays::of(ways, nodes, summary, defects).map_err(|error| reading.failed(error))?;
+    hand_out_roads(&reading, found, sink, on_defect).map_err(|error| reading.failed(error))
 }
 
 /// The places that all shares of nodes found.
@@ -118,13 +122,11 @@ impl NodeSource for KeptNodes<'_> {
         ids: &NodeIds,
         share: &ShareOfNodes,
         places: &mut NodePlaces,
-    ) -> Result<(), ReadOsmError> {
+    ) -> Result<(), Failed> {
         let Some(&last) = ids.ids().last() else { return Ok(()) };
         let mut search = ids.search();
         let mut count = 0;
-        while let Some(&place) =
-            self.places.peek().map_err(|error| reading.scratch_failed(error))?
-        {
+        while let Some(&place) = self.places.peek()? {
             if place.node_id > last {
                 break;
             }

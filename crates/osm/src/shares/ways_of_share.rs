@@ -1,5 +1,7 @@
 //! Step *ways*: pass 1 over the blobs of a share.
 
+use std::io;
+
 use super::{blocks::BlockWriter, kept::Kept, ways_record::WaysRecord};
 use crate::{
     Defect, ReadOsmError,
@@ -18,7 +20,7 @@ use crate::{
 /// The file is not read for the list of its blobs: their frames are sought one after the other.
 ///
 /// # Errors
-/// As [`read_roads`](crate::read_roads) for what is wrong in these blobs, and [`ReadOsmError::Kept`].
+/// As [`read_extract`](crate::read_extract) for what is wrong in these blobs, and [`ReadOsmError::Kept`].
 pub fn keep_ways(
     request: &ReadRequest<'_>,
     share: Share,
@@ -37,7 +39,7 @@ pub fn keep_ways(
     };
     let request = ReadRequest { on_progress: Some(&told), ..*request };
     let reading = Reading { request: &request, should_stop, len_bytes, layers: LayerCount::ROADS };
-    let failed = |error| reading.scratch_failed(error);
+    let failed = |error: io::Error| reading.failed(error);
     let kept_failed = |source| reading.kept_failed(source);
 
     let own: Vec<usize> = share.part_of(file.sizes()).collect();
@@ -52,11 +54,13 @@ pub fn keep_ways(
         bytes: [0, file.bytes_of(&own)],
     };
     let mut found = FoundWays::new(&reading);
-    found.read(&reading, &mut file, &own, &wanted, &mut [], &mut |defect| {
-        if not_kept.is_none() {
-            not_kept = defects.push(&defect).err();
-        }
-    })?;
+    found
+        .read(&reading, &mut file, &own, &wanted, &mut [], &mut |defect| {
+            if not_kept.is_none() {
+                not_kept = defects.push(&defect).err();
+            }
+        })
+        .map_err(|error| reading.failed(error))?;
     not_kept.map_or(Ok(()), Err).map_err(kept_failed)?;
     let FoundWays { ways, located, mut summary, looked_at, held_bytes, .. } = found;
     summary.nodes_seen = looked_at.nodes_seen;
@@ -73,7 +77,7 @@ pub fn keep_ways(
         blocks.push(&located.map_err(failed)?).map_err(kept_failed)?;
     }
     let record = WaysRecord {
-        counts: summary.into(),
+        counts: summary,
         header: file.take_header(),
         blobs_passed_over: file.blobs_passed_over(),
         len_bytes,

@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use super::kept::Kept;
 use crate::{
-    blobs::Header, counts::Counts, kept_error::KeptError, looked::NodeBlob, share::Share,
+    ExtractSummary, blobs::Header, kept_error::KeptError, looked::NodeBlob, share::Share,
     versions::Versions,
 };
 
 /// A share of ways.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct WaysRecord {
-    pub(crate) counts: Counts,
+    pub(crate) counts: ExtractSummary,
     /// The header of the whole file.
     pub(crate) header: Header,
     pub(crate) blobs_passed_over: u64,

@@ -4,7 +4,7 @@
 
 use std::fs;
 
-use crate::common::to_lattice;
+use crate::common::{outlined::check_lines, to_lattice};
 use corniche_areas::{BoundaryClass, ClassedLayer, LineClass};
 use corniche_osm::{
     ClassedLine, Defect, LayerSink, Layers, LineLoss, LineSummary, ReadRequest, read_extract,
@@ -26,7 +26,7 @@ impl LayerSink<ClassedLine, LineSummary> for Found {
     }
 
     fn end(&mut self, summary: LineSummary) {
-        summary.check_invariants();
+        check_lines(&summary);
         self.summary = summary;
     }
 }

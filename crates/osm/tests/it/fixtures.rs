@@ -7,9 +7,9 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
-use crate::common::{Extract, fixture, read, read_with, request, to_lattice};
+use crate::common::{Extract, fixture, read, read_with, request, roads::read_roads, to_lattice};
 use corniche_geom::LatticePoint;
-use corniche_osm::{Defect, ReadOsmError, read_roads};
+use corniche_osm::{Defect, ReadOsmError};
 use corniche_roads::{Form, Oneway, Road, Structure};
 use corniche_store::MemoryScratch;
 

@@ -4,11 +4,13 @@
 
 use std::{cell::Cell, fs, io::Cursor, path::Path};
 
-use crate::common::{CountedBlobs, Gathered, POOL, gather, request, to_lattice};
+use crate::common::{
+    CountedBlobs, Gathered, POOL, gather, request, roads::read_roads_from, to_lattice,
+};
 use corniche_areas::{Area, AreaTable, ClassedLayer};
 use corniche_osm::{
     AreaSummary, ClassedLine, Defect, ExtractSummary, LayerSink, Layers, LineSummary, ReadOsmError,
-    ReadRequest, read_extract, read_extract_from, read_roads_from,
+    ReadRequest, read_extract, read_extract_from,
 };
 use corniche_presets::{area_preset, parse_area_table};
 use corniche_roads::Road;

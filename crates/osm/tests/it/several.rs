@@ -7,9 +7,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::common::{Extract, POOL, gather, gather_kept, kept, read_bytes, request, to_lattice};
+use crate::common::{
+    Extract, POOL, gather, gather_kept, kept, read_bytes, request, roads::read_roads, to_lattice,
+};
 use corniche_osm::{
-    Defect, ExtractSummary, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways, read_roads,
+    Defect, ExtractSummary, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways,
 };
 use corniche_store::{MemoryScratch, MemoryStore};
 use corniche_testing::pbf::{Block, field, number, plain_header, raw, zigzag};

@@ -13,9 +13,9 @@ use std::{
 
 use crate::common::{
     CountedBlobs, Extract, POOL, fixture, gather, made::made_extract, read_bytes_within, request,
-    to_lattice,
+    roads::read_roads_from, to_lattice,
 };
-use corniche_osm::{ReadOsmError, ReadRequest, read_roads_from};
+use corniche_osm::{ReadOsmError, ReadRequest};
 use corniche_store::{MemoryScratch, Scratch, Span};
 use corniche_testing::{
     pbf::{Block, plain_header, raw},

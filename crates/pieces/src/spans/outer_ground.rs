@@ -50,7 +50,7 @@ impl OuterGrounds for &[OuterGround] {
         places: &[AskedPlace],
     ) -> Result<Vec<Option<f64>>, ExtractError> {
         let known: BTreeMap<LatticePoint, f64> =
-            self.iter().map(|own| (own.at(), own.height_m)).collect();
+            self.iter().map(|own| (own.at, own.height_m)).collect();
         Ok(places.iter().map(|place| known.get(&place.at).copied()).collect())
     }
 }

@@ -126,8 +126,9 @@ impl SpanSolving<'_> {
         }
         observer.end(Stage::Spans);
         let outer = asked.iter().zip(outer_m);
-        let outer =
-            outer.filter_map(|(place, height_m)| Some(OuterGround::new(place.at, height_m?)));
+        let outer = outer.filter_map(|(place, height_m)| {
+            Some(OuterGround { at: place.at, height_m: height_m? })
+        });
         let is_without = |&&index: &&usize| grounds_m[index].is_none();
         let without_ground = needed.iter().filter(is_without).count() as u64;
         Ok(SpanTotals::of(&network, &decks, within, (outer.collect(), without_ground)))

@@ -31,6 +31,7 @@ pub struct SpanTotals {
 
 impl SpanTotals {
     /// Counts solved decks, those that a road of the package has where it was asked for; `within` are those that the ground is on the wrong side of.
+    #[must_use]
     pub fn of(
         network: &SpanNetwork,
         decks: &Decks,
@@ -52,8 +53,8 @@ impl SpanTotals {
             let both = [found.crossing.upper, found.crossing.lower];
             both.iter().any(|place| place.kind.is_some() && is_counted(&place.way_id))
         });
-        outer.sort_unstable_by_key(OuterGround::at);
-        outer.dedup_by_key(|own| own.at());
+        outer.sort_unstable_by_key(|own| own.at);
+        outer.dedup_by_key(|own| own.at);
         let problems = problems.iter();
         Self {
             bridges: count_of(SpanKind::Bridge),

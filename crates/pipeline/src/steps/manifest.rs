@@ -21,8 +21,8 @@ use corniche_pieces::{
 use corniche_spec::{extent::Outline, manifest_texts, settings_record};
 use corniche_tileset::{
     AreaLevelRecord, AreasRecord, Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord,
-    LevelRecord, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord, SampleSums, ScaleRecord,
-    SpansRecord, SvTails, VerticalRecord,
+    LevelRecord, LineLevelRecord, LinesRecord, Manifest, PhotoLevelRecord, SampleSums, SpansRecord,
+    SvTails, VerticalRecord,
 };
 
 use crate::{
@@ -74,15 +74,11 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         crs_wkt: plan.crs_wkt.clone(),
         metres_per_unit: plan.metres_per_unit,
         point_scale: plan.point_scale,
-        scale: ScaleRecord {
-            center: plan.scale.center,
-            least: plan.scale.least,
-            largest: plan.scale.largest,
-        },
+        scale: plan.scale,
         frame,
         data_bounds: plan.data_bounds,
         wgs84_bounds: plan.wgs84_bounds,
-        clip: manifest_texts::clip(plan),
+        clip: plan.clip,
         outline: outcome.outline.as_ref().map(manifest_texts::outline),
         resampling: plan.resampling_text.clone(),
         nodes_are_samples: plan.nodes_are_samples(),

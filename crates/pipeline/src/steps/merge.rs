@@ -29,8 +29,8 @@ use corniche_spec::{
 };
 use corniche_store::{OpenMode, Scratch, open_own};
 use corniche_tileset::{
-    LevelRecord, Manifest, OuterGround, PayloadBuilder, ReliefLevels, Section, Sections,
-    WriteError, Writer, decode,
+    LevelRecord, Manifest, PayloadBuilder, ReliefLevels, Section, Sections, WriteError, Writer,
+    decode,
 };
 use corniche_tin::Tin;
 use corniche_work::Stage;
@@ -243,7 +243,7 @@ fn solve(context: &Context<'_>) -> Result<SpanTotals, BuildError> {
             let levels = context.levels;
             let dem = WholeDem { dem, plan: grid, levels, whole, threads, observer };
             let mut totals = solve(&dem)?;
-            let places: Vec<LatticePoint> = totals.outer.iter().map(OuterGround::at).collect();
+            let places: Vec<LatticePoint> = totals.outer.iter().map(|own| own.at).collect();
             totals.inputs =
                 context.opened.inputs.hash_unused(&dem.needed_files(&places)?, observer)?;
             Ok(totals)

@@ -118,7 +118,7 @@ fn finest(package: &FilePackage) -> BTreeMap<[i64; 2], TileId> {
 /// Compares the finest tiles inside, and returns how many there are.
 fn compare(whole: &Path, part: &Path) -> usize {
     let [whole, part] = [whole, part].map(|path| FilePackage::open(path).unwrap());
-    let (all, clip) = (finest(&whole), part.manifest().clip.clone().unwrap());
+    let (all, clip) = (finest(&whole), part.manifest().clip.unwrap());
     let frame = part.manifest().frame;
     let [low, high] = clip.nodes;
     let mut inside = 0;

@@ -131,9 +131,8 @@ fn a_rectangle_between_nodes_makes_the_tiles_of_bounds() {
         Some([west_north[0], east_south[1], east_south[0], west_north[1]]);
     let with_bounds = made(&settings);
     // The nodes that the bounds are rounded to, as a polygon.
-    let (clip, frame) = (with_bounds.manifest().clip.clone(), with_bounds.manifest().frame);
-    let [low, high] =
-        clip.clone().unwrap().nodes.map(|node| [frame.x_m(node.i), frame.y_m(node.j)]);
+    let (clip, frame) = (with_bounds.manifest().clip, with_bounds.manifest().frame);
+    let [low, high] = clip.unwrap().nodes.map(|node| [frame.x_m(node.i), frame.y_m(node.j)]);
     let own =
         files.polygon_m("square.geojson", &[vec![low, [high[0], low[1]], high, [low[0], high[1]]]]);
     let with_polygon = made(&files.settings("polygon.pmtiles", 30.0, Some(&own)));

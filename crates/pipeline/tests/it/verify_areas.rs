@@ -104,7 +104,9 @@ impl Apart {
 
     fn put_together(&self) -> PathBuf {
         let path = self.folder.path().join("changed.pmtiles");
-        let mut writer = Writer::create(&path, &self.manifest).unwrap();
+        let mut writer =
+            Writer::of_file(std::fs::File::create(&path).unwrap(), &self.manifest, usize::MAX)
+                .unwrap();
         for tile in self.tiles.values() {
             writer.add(tile.id, &tile.bytes(&self.manifest.frame)).unwrap();
         }
@@ -329,7 +331,10 @@ fn fields_of_areas_in_the_manifest() {
         let mut apart = Apart::sound();
         change(&mut apart.manifest);
         let path = apart.folder.path().join("refused.pmtiles");
-        assert!(Writer::create(&path, &apart.manifest).is_err());
+        assert!(
+            Writer::of_file(std::fs::File::create(&path).unwrap(), &apart.manifest, usize::MAX)
+                .is_err()
+        );
     }
 }
 

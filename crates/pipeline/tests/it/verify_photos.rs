@@ -100,7 +100,9 @@ impl Apart {
 
     fn put_together(&self) -> PathBuf {
         let path = self.folder.path().join("changed.pmtiles");
-        let mut writer = Writer::create(&path, &self.manifest).unwrap();
+        let mut writer =
+            Writer::of_file(std::fs::File::create(&path).unwrap(), &self.manifest, usize::MAX)
+                .unwrap();
         for (id, payload, photo) in self.tiles.values() {
             let bytes = match photo {
                 Some(photo) => with_section(payload, *id, photo.clone()),
@@ -330,7 +332,10 @@ fn fields_of_photos_in_the_manifest() {
     let mut apart = Apart::sound();
     apart.manifest.photos[1].level = 5;
     let path = apart.folder.path().join("refused.pmtiles");
-    assert!(Writer::create(&path, &apart.manifest).is_err());
+    assert!(
+        Writer::of_file(std::fs::File::create(&path).unwrap(), &apart.manifest, usize::MAX)
+            .is_err()
+    );
     for change in counts {
         let mut apart = Apart::sound();
         change(&mut apart.manifest);

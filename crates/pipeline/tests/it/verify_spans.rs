@@ -105,7 +105,9 @@ impl Apart {
 
     fn put_together(&self) -> PathBuf {
         let path = self.folder.path().join("changed.pmtiles");
-        let mut writer = Writer::create(&path, &self.manifest).unwrap();
+        let mut writer =
+            Writer::of_file(std::fs::File::create(&path).unwrap(), &self.manifest, usize::MAX)
+                .unwrap();
         for tile in &self.tiles {
             writer.add(tile.id, &tile.bytes).unwrap();
         }

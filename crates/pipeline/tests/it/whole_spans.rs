@@ -172,7 +172,7 @@ fn cut_spans_are_whole(region: &Region, tiles_wide: f64) {
         let bounds = bounds_through(place, number, size);
         let settings = within(region.settings(folder.path(), "bounds"), bounds);
         let part = built(&settings);
-        let [low, high] = part.manifest().clip.clone().unwrap().nodes;
+        let [low, high] = part.manifest().clip.unwrap().nodes;
         let [first, last] = manifest.data_nodes();
         let is_within = |[i, j]: [i64; 2]| {
             let is_data = (first.i..=last.i).contains(&i) && (first.j..=last.j).contains(&j);
@@ -318,7 +318,7 @@ fn a_bridge_that_bounds_cut_has_its_own_heights() {
         let (found, wanted): (Vec<Option<f64>>, Vec<f64>) = pairs.unzip();
         assert!(found.len() > 1, "{name}");
         assert_near(&found, &wanted, name);
-        let [low, high] = part.manifest().clip.clone().unwrap().nodes;
+        let [low, high] = part.manifest().clip.unwrap().nodes;
         let [first, last] = whole.manifest().data_nodes();
         let tiles = compare(&whole, &part, |[i, j]| {
             let is_data = (first.i..=last.i).contains(&i) && (first.j..=last.j).contains(&j);

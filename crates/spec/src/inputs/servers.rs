@@ -5,9 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_gis::{
-    NameError, expand_extract_name, expand_name, expand_photo_name, set_unless_set, unpack_name,
-};
+use corniche_gis::{Sought, expand_name, set_unless_set, unpack_name};
 use corniche_objects::{ObjectAddress, StorageSettings};
 
 use super::error::InputError;
@@ -33,17 +31,14 @@ pub fn input_name(path: PathBuf) -> Result<PathBuf, corniche_objects::ObjectErro
 /// # Errors
 /// When a name stands for no file, or is no address.
 pub fn elevation_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
-    raster_names(names, expand_name)
+    raster_names(names, Sought::Elevation)
 }
 
-/// The rasters that names stand for, which `expand` turns into plain names.
-fn raster_names(
-    names: &[PathBuf],
-    expand: fn(&Path) -> Result<Vec<PathBuf>, NameError>,
-) -> Result<Vec<PathBuf>, InputError> {
+/// The rasters that names stand for.
+fn raster_names(names: &[PathBuf], sought: Sought) -> Result<Vec<PathBuf>, InputError> {
     let mut plain = Vec::new();
     for name in names {
-        for name in expand(name)? {
+        for name in expand_name(name, sought)? {
             plain.push(input_name(name)?);
         }
     }
@@ -62,7 +57,7 @@ fn raster_names(
 /// # Errors
 /// As [`elevation_names`].
 pub fn photo_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
-    raster_names(names, expand_photo_name)
+    raster_names(names, Sought::Photos)
 }
 
 /// The extracts that names stand for, sorted by file name and then by path, each once: folders, patterns and `@LIST` included. What is made of
@@ -73,7 +68,7 @@ pub fn photo_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
 pub fn extract_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
     let mut files = Vec::new();
     for name in names {
-        for name in expand_extract_name(name)? {
+        for name in expand_name(name, Sought::Extracts)? {
             files.push(input_name(name)?);
         }
     }

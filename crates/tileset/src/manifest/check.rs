@@ -162,7 +162,7 @@ impl Manifest {
             return Ok(());
         };
         for pair in outer_grounds.windows(2) {
-            that(pair[0].at() < pair[1].at(), "spans.outer_grounds (their order)", pair)?;
+            that(pair[0].at < pair[1].at, "spans.outer_grounds (their order)", pair)?;
         }
         for ground in outer_grounds {
             that(ground.height_m.is_finite(), "spans.outer_grounds", ground)?;
@@ -278,17 +278,16 @@ fn check_distribution(distribution: &Distribution) -> Result<(), String> {
 }
 
 fn level_counts(record: &LevelRecord) -> [u64; 8] {
-    let LevelRecord {
-        tiles,
-        triangles,
-        vertices,
-        terrain_bytes,
-        relief_bytes,
-        uncovered_nodes,
-        ..
-    } = *record;
-    let SampleErrorRecord { on_tin, off_tin, .. } = record.sample_error;
-    [tiles, triangles, vertices, terrain_bytes, relief_bytes, uncovered_nodes, on_tin, off_tin]
+    [
+        record.tiles,
+        record.triangles,
+        record.vertices,
+        record.terrain_bytes,
+        record.relief_bytes,
+        record.uncovered_nodes,
+        record.sample_error.on_tin,
+        record.sample_error.off_tin,
+    ]
 }
 
 fn check_counts(counts: &Counts) -> Result<(), String> {

@@ -1,7 +1,9 @@
 //! The manifest of a package: everything that a reader must know before it reads a tile.
 
 use corniche_areas::ClassedLayer;
-use corniche_geom::{Bounds, CoordinateTable, GridFrame, LatticePoint, NodeIndex};
+use corniche_geom::{
+    Bounds, ClipRecord, CoordinateTable, GridFrame, LatticePoint, NodeIndex, ScaleRecord,
+};
 use corniche_settings::SettingsRecord;
 use serde::{Deserialize, Serialize};
 
@@ -87,18 +89,6 @@ pub struct Manifest {
     pub sv_tails: Vec<SvTail>,
 }
 
-/// The part of the elevation files that a package is of.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ClipRecord {
-    /// The bounds that were asked for, those of a polygon included, rounded outwards to whole cells: south-western and north-eastern node. They may reach
-    /// beyond the data.
-    pub nodes: [NodeIndex; 2],
-    /// Rectangle of the nodes of all elevation files, working metres.
-    pub whole_data_bounds: Bounds,
-    /// The same in WGS84 degrees. The scales of the package, and PROJ's choice of an operation, are those for it.
-    pub whole_wgs84_bounds: Bounds,
-}
-
 impl Manifest {
     /// The input files of a kind, in the order in which they were named.
     pub fn inputs_of(&self, kind: InputKind) -> impl Iterator<Item = &InputRecord> {
@@ -170,17 +160,6 @@ impl Manifest {
     pub fn whole_data_bounds(&self) -> Bounds {
         self.clip.as_ref().map_or(self.data_bounds, |clip| clip.whole_data_bounds)
     }
-}
-
-/// Working metres to a true metre, along x and along y.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ScaleRecord {
-    /// The scale in the middle of the data.
-    pub center: [f64; 2],
-    /// The smallest over corners, middles of sides and centre of every file.
-    pub least: [f64; 2],
-    /// The largest.
-    pub largest: [f64; 2],
 }
 
 /// Heights: step, unit, datum.
@@ -312,23 +291,10 @@ pub struct SpansRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(from = "(i64, i64, f64)", into = "(i64, i64, f64)")]
 pub struct OuterGround {
-    at: LatticePoint,
+    /// Where it is.
+    pub at: LatticePoint,
     /// Its height, metres.
     pub height_m: f64,
-}
-
-impl OuterGround {
-    /// The ground at a place.
-    #[must_use]
-    pub const fn new(at: LatticePoint, height_m: f64) -> Self {
-        Self { at, height_m }
-    }
-
-    /// Where it is.
-    #[must_use]
-    pub const fn at(&self) -> LatticePoint {
-        self.at
-    }
 }
 
 impl From<(i64, i64, f64)> for OuterGround {

@@ -27,6 +27,11 @@ pub fn telling_ranges(start: &[u8], file_length: u64) -> Option<[Range<u64>; 4]>
     Some([header, root, metadata, leaves].map(|Span { offset, length }| offset..offset + length))
 }
 
+/// Some bytes of a header, from one on.
+pub(crate) fn bytes_at<const N: usize>(header: &[u8; HEADER_BYTES], from: usize) -> [u8; N] {
+    std::array::from_fn(|index| header[from + index])
+}
+
 /// What a reader needs of the header.
 ///
 /// ```text
@@ -57,11 +62,7 @@ impl Header {
         if bytes[7] != 3 {
             return Err(OpenError::PmtilesVersion { found: bytes[7] });
         }
-        let number = |at: usize| {
-            let mut eight = [0; 8];
-            eight.copy_from_slice(&bytes[at..at + 8]);
-            u64::from_le_bytes(eight)
-        };
+        let number = |at: usize| u64::from_le_bytes(bytes_at(bytes, at));
         let span = |at: usize| Span { offset: number(at), length: number(at + 8) };
         let header = Self {
             root: span(8),

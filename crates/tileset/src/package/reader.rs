@@ -55,7 +55,7 @@ impl<S: ByteSource> Package<S> {
         // Before the directory, so that a PMTiles file of another program is reported as such, whatever else is wrong
         // with it.
         let metadata = read_metadata(&source, &header).await?;
-        let manifest = parse_manifest(&metadata)?;
+        let manifest = Manifest::in_metadata(&metadata)?;
         let root_in_initial = usize::try_from(header.root.offset)
             .ok()
             .filter(|&from| from >= HEADER_BYTES)
@@ -277,28 +277,24 @@ impl Manifest {
     /// # Errors
     /// When there is none, or one of another version, or it makes no sense.
     pub fn in_metadata(metadata: &[u8]) -> Result<Self, OpenError> {
-        parse_manifest(metadata)
+        let failed = |error: serde_json::Error| OpenError::manifest(error);
+        // The text is read three times, each time with more of its fields, and never into a tree of JSON values: such a tree
+        // can take a hundred times the memory of the text.
+        let object: Metadata<Option<IgnoredAny>> = parse(metadata).map_err(|error| {
+            // An ordinary file may have any object; a package has one with the key `corniche`.
+            if error.is_data() { OpenError::OrdinaryPmtiles } else { failed(error) }
+        })?;
+        if object.corniche.is_none() {
+            return Err(OpenError::OrdinaryPmtiles);
+        }
+        let version: Metadata<Version> = parse(metadata).map_err(failed)?;
+        if version.corniche.format_version != u64::from(FORMAT_VERSION) {
+            return Err(OpenError::Version { found: version.corniche.format_version });
+        }
+        let metadata: Metadata<Self> = parse(metadata).map_err(failed)?;
+        metadata.corniche.check().map_err(OpenError::manifest)?;
+        Ok(metadata.corniche)
     }
-}
-
-fn parse_manifest(metadata: &[u8]) -> Result<Manifest, OpenError> {
-    let failed = |error: serde_json::Error| OpenError::manifest(error);
-    // The text is read three times, each time with more of its fields, and never into a tree of JSON values: such a tree
-    // can take a hundred times the memory of the text.
-    let object: Metadata<Option<IgnoredAny>> = parse(metadata).map_err(|error| {
-        // An ordinary file may have any object; a package has one with the key `corniche`.
-        if error.is_data() { OpenError::OrdinaryPmtiles } else { failed(error) }
-    })?;
-    if object.corniche.is_none() {
-        return Err(OpenError::OrdinaryPmtiles);
-    }
-    let version: Metadata<Version> = parse(metadata).map_err(failed)?;
-    if version.corniche.format_version != u64::from(FORMAT_VERSION) {
-        return Err(OpenError::Version { found: version.corniche.format_version });
-    }
-    let metadata: Metadata<Manifest> = parse(metadata).map_err(failed)?;
-    metadata.corniche.check().map_err(OpenError::manifest)?;
-    Ok(metadata.corniche)
 }
 
 fn parse<'a, T: Deserialize<'a>>(metadata: &'a [u8]) -> Result<Metadata<T>, serde_json::Error> {

@@ -156,7 +156,7 @@ mod file {
         path::{Path, PathBuf},
     };
 
-    use super::{BlockingSource, ByteSource, SourceError};
+    use super::{BlockingSource, SourceError};
 
     /// A package on disk, read at positions: several threads may read at once.
     #[derive(Debug)]
@@ -212,16 +212,6 @@ mod file {
             offset += read as u64;
         }
         Ok(())
-    }
-
-    impl ByteSource for FileSource {
-        async fn length(&self) -> Result<u64, SourceError> {
-            BlockingSource::length(self)
-        }
-
-        async fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
-            BlockingSource::read(self, offset, length)
-        }
     }
 
     impl BlockingSource for FileSource {

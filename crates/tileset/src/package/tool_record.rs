@@ -5,7 +5,7 @@ use serde::de::IgnoredAny;
 
 use crate::Manifest;
 use crate::package::error::OpenError;
-use crate::package::header::HEADER_BYTES;
+use crate::package::header::{HEADER_BYTES, bytes_at};
 use crate::package::metadata::Metadata;
 
 /// Steps of the header's degrees in a degree.
@@ -68,16 +68,8 @@ impl ToolRecord {
             let actual = header.len() as u64;
             return Err(OpenError::Truncated { needed: HEADER_BYTES as u64, actual });
         };
-        let count = |at: usize| {
-            let mut eight = [0; 8];
-            eight.copy_from_slice(&bytes[at..at + 8]);
-            u64::from_le_bytes(eight)
-        };
-        let degrees = |at: usize| {
-            let mut four = [0; 4];
-            four.copy_from_slice(&bytes[at..at + 4]);
-            i32::from_le_bytes(four)
-        };
+        let count = |at: usize| u64::from_le_bytes(bytes_at(bytes, at));
+        let degrees = |at: usize| i32::from_le_bytes(bytes_at(bytes, at));
         let texts: Metadata<IgnoredAny> =
             serde_json::from_slice(metadata).map_err(OpenError::manifest)?;
         Ok(Self {

@@ -3,7 +3,6 @@
 use std::{
     fs::File,
     io::{self, Seek, Write},
-    path::Path,
     sync::Arc,
 };
 
@@ -79,48 +78,24 @@ pub struct Writer<W: Write + Seek> {
 }
 
 impl Writer<Arc<File>> {
-    /// Creates a file, or empties it, for any number of tiles.
+    /// Writes to a file that was made for it, and is open, at most so many tiles: a package of few is up to 16 KB smaller.
     ///
     /// # Errors
-    /// When that fails, or the manifest cannot be written.
-    pub fn create(path: &Path, manifest: &Manifest) -> Result<Self, WriteError> {
-        Self::create_for(path, manifest, usize::MAX)
-    }
-
-    /// The same for at most so many tiles: a package of few is up to 16 KB smaller.
-    ///
-    /// # Errors
-    /// As [`Writer::create`]; when there are more, [`Writer::finish`] may fail.
-    pub fn create_for(path: &Path, manifest: &Manifest, tiles: usize) -> Result<Self, WriteError> {
-        Self::of_file(File::create(path)?, manifest, tiles)
-    }
-
-    /// The same in a file that was made for it, and is open.
-    ///
-    /// # Errors
-    /// As [`Writer::create_for`].
+    /// When that fails, or the manifest cannot be written. When there are more tiles, [`Writer::finish`] may fail.
     pub fn of_file(file: File, manifest: &Manifest, tiles: usize) -> Result<Self, WriteError> {
         let file = Arc::new(file);
-        let mut writer = Self::new_for(Arc::clone(&file), manifest, tiles)?;
+        let mut writer = Self::new(Arc::clone(&file), manifest, tiles)?;
         writer.file = Some(file);
         Ok(writer)
     }
 }
 
 impl<W: Write + Seek> Writer<W> {
-    /// Writes to `out`, which is empty, any number of tiles.
+    /// Writes to `out`, which is empty, at most so many tiles: a package of few is up to 16 KB smaller.
     ///
     /// # Errors
-    /// When that fails, or the manifest cannot be written.
-    pub fn new(out: W, manifest: &Manifest) -> Result<Self, WriteError> {
-        Self::new_for(out, manifest, usize::MAX)
-    }
-
-    /// The same for at most so many tiles: a package of few is up to 16 KB smaller.
-    ///
-    /// # Errors
-    /// As [`Writer::new`]; when there are more, [`Writer::finish`] may fail.
-    pub fn new_for(out: W, manifest: &Manifest, tiles: usize) -> Result<Self, WriteError> {
+    /// When that fails, or the manifest cannot be written. When there are more tiles, [`Writer::finish`] may fail.
+    pub fn new(out: W, manifest: &Manifest, tiles: usize) -> Result<Self, WriteError> {
         let bounds = header_bounds(manifest.wgs84_bounds);
         let [lon, lat] = bounds.center();
         let max_level = manifest.frame.max_level();

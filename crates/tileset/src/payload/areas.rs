@@ -15,7 +15,7 @@ use crate::payload::section_kind::{AREAS, Kind};
 
 use decode::decode;
 #[cfg(feature = "write")]
-pub use encode::{area_part_sizes, encode_areas};
+pub use encode::encode_areas;
 pub use record::{AreaRecord, AreaRings};
 
 /// Reads the areas of a tile from the bytes of its payload; none if it has none. Memory is bounded by the

@@ -185,7 +185,7 @@ fn a_border_that_two_areas_share_is_coded_once() {
 fn two_sections_of_areas_are_refused() {
     let bytes = builder::payload_of(id(), raw(&[lake()], 1));
     let what = "two sections for the same objects";
-    assert_eq!(decode_areas(&bytes, id(), &frame()).unwrap_err().damage, Damage::Invalid { what });
+    assert_eq!(decode_areas(&bytes, id(), &frame()).unwrap_err().damage, Damage::Invalid(what));
 }
 
 #[test]
@@ -205,8 +205,8 @@ fn hostile_numbers_are_refused_before_memory_is_taken_for_them() {
     let damage =
         |section: &[u8]| decode_areas(&payload(section), id(), &frame()).unwrap_err().damage;
     // A lattice of no spacing; more areas than are allowed.
-    assert_eq!(damage(&[0, 0]), Damage::Invalid { what: "the spacing of the areas' lattice" });
-    assert_eq!(damage(&[1, 255, 255, 255, 127]), Damage::Invalid { what: "number of areas" });
+    assert_eq!(damage(&[0, 0]), Damage::Invalid("the spacing of the areas' lattice"));
+    assert_eq!(damage(&[1, 255, 255, 255, 127]), Damage::Invalid("number of areas"));
     // One area of 2^56 polygons; one ring of 2^56 points.
     let planes = |number: u64| [&[8_u8][..], &number.to_le_bytes()].concat();
     let head =
@@ -226,7 +226,7 @@ fn hostile_numbers_are_refused_before_memory_is_taken_for_them() {
         vec![0; 4],
     ]
     .concat();
-    assert_eq!(damage(&class), Damage::Invalid { what: "a class of areas" });
+    assert_eq!(damage(&class), Damage::Invalid("a class of areas"));
     let far = |steps: u64| {
         // Three numbers in planes: the first has all the bytes.
         let mut columns = vec![8];
@@ -236,11 +236,7 @@ fn hostile_numbers_are_refused_before_memory_is_taken_for_them() {
         [ring(0), columns, vec![0; 3]].concat()
     };
     for steps in [u64::MAX, u64::MAX - 1, 1, 1 << 62] {
-        assert_eq!(
-            damage(&far(steps)),
-            Damage::Invalid { what: "a point outside the tile" },
-            "{steps}"
-        );
+        assert_eq!(damage(&far(steps)), Damage::Invalid("a point outside the tile"), "{steps}");
     }
 }
 

@@ -5,6 +5,7 @@ use serde::de::DeserializeOwned;
 
 use crate::limits::{MAX_SECTION_BYTES, MAX_TEXT_BYTES, MAX_WAYS};
 use crate::payload::damage::Damage;
+use crate::payload::number_codes::take_room;
 use crate::payload::tile_payload::RoadRecord;
 
 /// The whole section, in `bincode`'s legacy layout: every list starts with its length as u64. Lists after
@@ -41,7 +42,7 @@ fn decode_record(bytes: &[u8]) -> Result<Record, Damage> {
         surfaces: list(&mut rest, MAX_WAYS)?,
     };
     if !rest.is_empty() {
-        return Err(Damage::Invalid { what: "bytes left over at the end" });
+        return Err(Damage::Invalid("bytes left over at the end"));
     }
     let count = record.way_id_steps.len();
     let lengths = [
@@ -54,7 +55,7 @@ fn decode_record(bytes: &[u8]) -> Result<Record, Damage> {
         record.surfaces.len(),
     ];
     if lengths != [count; 7] {
-        return Err(Damage::Invalid { what: "lists of different lengths" });
+        return Err(Damage::Invalid("lists of different lengths"));
     }
     Ok(record)
 }
@@ -68,23 +69,19 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
         let text = record
             .texts
             .get(index as usize)
-            .ok_or(Damage::Invalid { what: "a text that does not exist" })?;
-        room = room.checked_sub(text.len()).ok_or(Damage::TooLarge {
-            what: "texts of all ways",
-            length: MAX_TEXT_BYTES as u64 + 1,
-            limit: MAX_TEXT_BYTES as u64,
-        })?;
+            .ok_or(Damage::Invalid("a text that does not exist"))?;
+        take_room(&mut room, text.len(), MAX_TEXT_BYTES, "texts of all ways")?;
         Ok::<String, Damage>(text.clone())
     };
-    let known = Damage::Invalid { what: "a value that this version does not know" };
+    let known = Damage::Invalid("a value that this version does not know");
     let mut way_id = 0_i64;
     let mut roads = Vec::with_capacity(count);
     for k in 0..count {
         let step = record.way_id_steps[k];
         if k > 0 && step <= 0 {
-            return Err(Damage::Invalid { what: "ways are not sorted" });
+            return Err(Damage::Invalid("ways are not sorted"));
         }
-        way_id = way_id.checked_add(step).ok_or(Damage::Invalid { what: "a way id" })?;
+        way_id = way_id.checked_add(step).ok_or(Damage::Invalid("a way id"))?;
         let attributes = RoadAttributes {
             form: *Form::ALL.get(usize::from(record.forms[k])).ok_or(known.clone())?,
             structure: *Structure::ALL
@@ -112,7 +109,7 @@ fn list<T: DeserializeOwned>(bytes: &mut &[u8], limit: usize) -> Result<Vec<T>, 
     }
     let config = bincode::config::legacy().with_limit::<MAX_SECTION_BYTES>();
     let (list, taken) = bincode::serde::decode_from_slice(bytes, config)
-        .map_err(|_| Damage::Invalid { what: "the records of the section" })?;
+        .map_err(|_| Damage::Invalid("the records of the section"))?;
     *bytes = bytes.get(taken..).ok_or(Damage::TooShort)?;
     Ok(list)
 }

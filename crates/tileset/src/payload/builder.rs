@@ -209,11 +209,6 @@ fn smaller(raw: &[u8]) -> std::io::Result<Option<Vec<u8>>> {
     Ok(Some(compressed).filter(|compressed| compressed.len() < raw.len()))
 }
 
-/// How many bytes `raw` takes as the content of a section. For measurements.
-pub(crate) fn compressed_size(raw: &[u8]) -> usize {
-    smaller(raw).ok().flatten().map_or(raw.len(), |smaller| smaller.len())
-}
-
 /// A payload of any sections, also of some that no writer puts beside each other.
 #[cfg(test)]
 pub(crate) fn payload_of<const N: usize>(tile: TileId, sections: [(Kind, Vec<u8>); N]) -> Vec<u8> {

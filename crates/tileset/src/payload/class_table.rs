@@ -6,7 +6,7 @@ use corniche_varints::zigzag;
 
 use crate::limits::{MAX_LINES, MAX_POINTS};
 use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::payload::number_codes::{Cursor, take_room};
 
 /// Class, number of lines, and their bytes.
 pub(crate) type ClassBlob<'a> = (FunctionalRoadClass, usize, &'a [u8]);
@@ -19,7 +19,7 @@ pub(crate) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, 
         let lines = u32::from_le_bytes(cursor.array()?) as usize;
         let length = u32::from_le_bytes(cursor.array()?) as usize;
         if (lines == 0) != (length == 0) {
-            return Err(Damage::Invalid { what: "the table of classes" });
+            return Err(Damage::Invalid("the table of classes"));
         }
         all_lines += lines;
         counts.push((class, lines, length));
@@ -51,17 +51,7 @@ pub(crate) struct Head {
 
 /// Takes the points of a line from the `room` that its section has left.
 pub(crate) fn take_points(room: &mut usize, points: usize) -> Result<(), Damage> {
-    take_points_of(MAX_POINTS, room, points)
-}
-
-/// Does the same in a section that may have so many points.
-pub(crate) fn take_points_of(most: usize, room: &mut usize, points: usize) -> Result<(), Damage> {
-    *room = room.checked_sub(points).ok_or(Damage::TooLarge {
-        what: "points of a section",
-        length: most as u64 + 1,
-        limit: most as u64,
-    })?;
-    Ok(())
+    take_room(room, points, MAX_POINTS, "points of a section")
 }
 
 /// Checks that the lines of a class are sorted.
@@ -75,7 +65,7 @@ impl LineOrder {
     pub(crate) fn check(&mut self, next: &Head) -> Result<(), Damage> {
         let next = Some((next.way_id, next.part));
         if next <= self.last {
-            return Err(Damage::Invalid { what: "lines are not sorted" });
+            return Err(Damage::Invalid("lines are not sorted"));
         }
         self.last = next;
         Ok(())

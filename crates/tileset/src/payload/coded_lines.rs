@@ -44,7 +44,7 @@ pub(crate) struct LineCoder<'f> {
     before: Option<[i64; 2]>,
 }
 
-const UNKNOWN: Damage = Damage::Invalid { what: "a point that was not there before" };
+const UNKNOWN: Damage = Damage::Invalid("a point that was not there before");
 
 impl<'f> LineCoder<'f> {
     /// The coder of the lines of one class of a tile with this south-western corner.
@@ -83,7 +83,7 @@ impl<'f> LineCoder<'f> {
         let [lead_in, lead_out] = &mut self.flags;
         let flags = flag(bits, lead_in, 1) | flag(bits, lead_out, 2) << 1;
         if points > MAX_POINTS {
-            return Err(Damage::Invalid { what: "number of points" });
+            return Err(Damage::Invalid("number of points"));
         }
         self.before = None;
         self.was_known = false;
@@ -177,7 +177,7 @@ impl<'f> LineCoder<'f> {
             bits.check_end()?;
             let point = self.code_point(bits, number, &head, None)?;
             if points.last() == Some(&point) {
-                return Err(Damage::Invalid { what: "a segment without length" });
+                return Err(Damage::Invalid("a segment without length"));
             }
             points.push(point);
             after_each(self, bits, number)?;

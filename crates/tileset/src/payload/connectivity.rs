@@ -138,7 +138,7 @@ impl<'w> Edges<'w> {
     pub(crate) fn add(&mut self, [a, b, c]: [u32; 3]) -> Result<(), Damage> {
         for [from, to] in [[a, b], [b, c], [c, a]] {
             if from == to || self.has(from, to) {
-                return Err(Damage::Invalid { what: "two triangles on the same side of an edge" });
+                return Err(Damage::Invalid("two triangles on the same side of an edge"));
             }
             self.add_edge(from, to);
         }
@@ -255,7 +255,7 @@ fn check_vertex(vertex: u32, nodes: &Nodes<'_>) -> Result<(), Damage> {
     if (vertex as usize) < nodes.len() {
         Ok(())
     } else {
-        Err(Damage::Invalid { what: "a triangle's vertex" })
+        Err(Damage::Invalid("a triangle's vertex"))
     }
 }
 

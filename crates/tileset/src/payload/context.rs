@@ -21,7 +21,7 @@ impl Context {
             return Err(Damage::Level { level: id.z(), finest: frame.max_level() });
         }
         if !is_height_quantum(quantum_m) {
-            return Err(Damage::Invalid { what: "the height quantum" });
+            return Err(Damage::Invalid("the height quantum"));
         }
         let placement = Placement::of_tile(frame, id, quantum_m);
         Ok(Self {

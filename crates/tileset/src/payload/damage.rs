@@ -50,12 +50,9 @@ pub enum Damage {
         /// What the decompressor says.
         reason: String,
     },
-    /// A value that no writer writes.
-    #[error("not valid: {what}")]
-    Invalid {
-        /// What is not.
-        what: &'static str,
-    },
+    /// A value that no writer writes: what is not valid.
+    #[error("not valid: {0}")]
+    Invalid(&'static str),
     /// The triangles are not a TIN.
     #[error("not a TIN: {0}")]
     Tin(#[from] corniche_tin::TinError),

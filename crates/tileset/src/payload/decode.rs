@@ -119,7 +119,7 @@ fn decode_geo(
     context: &Context,
 ) -> Result<Vec<GeoRoad>, Damage> {
     let Some(ground) = ground else {
-        return Err(Damage::Invalid { what: "roads without the ground they lie on" });
+        return Err(Damage::Invalid("roads without the ground they lie on"));
     };
     let surface = Surface::new(&ground.tin, context.placement);
     roads_geo::decode(bytes, coded_in, context.corner, &surface)

@@ -45,23 +45,6 @@ pub fn encode(payload: &TilePayload, context: &PayloadContext) -> Result<Encoded
     encode_sections(payload, context, None)?.seal()
 }
 
-/// How many bytes the parts of a payload's terrain section take: record, positions, triangles, heights, normals; all 0 without ground. For
-/// measurements: a part's last bits may be counted with the next part.
-///
-/// # Errors
-/// As [`encode`], of the ground.
-pub fn terrain_part_sizes(
-    payload: &TilePayload,
-    context: &PayloadContext,
-) -> Result<[usize; 5], EncodeError> {
-    let tile = payload.id;
-    let failed = |what| EncodeError::Unencodable { tile, section: Kind::Terrain.name(), what };
-    let context = Context::new(tile, &context.frame, context.quantum_m)
-        .map_err(|_| failed("a tile beyond the package's finest level"))?;
-    let sizes = payload.terrain.as_ref().map(|ground| terrain::part_sizes(ground, context.scale));
-    Ok(sizes.transpose().map_err(failed)?.unwrap_or_default())
-}
-
 /// The sections of a payload, to which others may be added before it is sealed.
 ///
 /// If the payload's ground was decoded from `earlier`, a payload of the same tile in the same context, its terrain section is taken as it is stored there,

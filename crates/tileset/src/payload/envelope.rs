@@ -73,7 +73,7 @@ pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_
         let (offset, stored_length) = (offset? as usize, length? as usize);
         let stored = offset.checked_add(stored_length).and_then(|end| bytes.get(offset..end));
         if reserved != 0 {
-            return Err(Damage::Invalid { what: "a reserved byte of the section table is not 0" });
+            return Err(Damage::Invalid("a reserved byte of the section table is not 0"));
         }
         let section = StoredSection {
             kind,
@@ -98,16 +98,16 @@ pub(crate) fn open_read(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_
     let mut end = bytes.len() - cursor.left();
     for [from, to] in ends {
         if from != end {
-            return Err(Damage::Invalid { what: "sections do not lie end to end" });
+            return Err(Damage::Invalid("sections do not lie end to end"));
         }
         end = to;
     }
     if end != bytes.len() {
-        return Err(Damage::Invalid { what: "bytes after the last section" });
+        return Err(Damage::Invalid("bytes after the last section"));
     }
     for (number, section) in sections.iter().enumerate() {
         if sections[..number].iter().any(|before| before.kind == section.kind) {
-            return Err(Damage::Invalid { what: "two sections of one kind" });
+            return Err(Damage::Invalid("two sections of one kind"));
         }
     }
     // This check comes after the checksum, so its error means a payload in the wrong place, not a flipped bit.
@@ -141,11 +141,11 @@ pub(crate) fn section(
     }
     match section.compression {
         STORED if section.bytes.len() == raw_length => Ok(Some(section.bytes.to_vec())),
-        STORED => Err(Damage::Invalid { what: "the length of an uncompressed section" }),
+        STORED => Err(Damage::Invalid("the length of an uncompressed section")),
         // Writers compress where that makes a section smaller.
         ZSTD if section.bytes.len() < raw_length => decompress(section.bytes, raw_length).map(Some),
-        ZSTD => Err(Damage::Invalid { what: "the length of a compressed section" }),
-        _ => Err(Damage::Invalid { what: "an unknown compression" }),
+        ZSTD => Err(Damage::Invalid("the length of a compressed section")),
+        _ => Err(Damage::Invalid("an unknown compression")),
     }
 }
 
@@ -167,7 +167,7 @@ pub(crate) fn section_of_two(
     kinds: TwoKinds,
 ) -> Result<Option<(Vec<u8>, bool)>, Damage> {
     match (section(sections, kinds.planes)?, section(sections, kinds.coded)?) {
-        (Some(_), Some(_)) => Err(Damage::Invalid { what: "two sections for the same objects" }),
+        (Some(_), Some(_)) => Err(Damage::Invalid("two sections for the same objects")),
         (Some(planes), None) => Ok(Some((planes, false))),
         (None, coded) => Ok(coded.map(|coded| (coded, true))),
     }
@@ -218,17 +218,17 @@ fn decompress(mut bytes: &[u8], length: usize) -> Result<Vec<u8>, Damage> {
             .map_err(|error| failed(&error))?;
         written += decoder.read(&mut out[written..]).map_err(|error| failed(&error))?;
         if decoder.can_collect() > 0 {
-            return Err(Damage::Invalid { what: "a section is longer than it says" });
+            return Err(Damage::Invalid("a section is longer than it says"));
         }
         if decoder.is_finished() {
             break;
         }
     }
     if !bytes.is_empty() {
-        return Err(Damage::Invalid { what: "bytes after the compressed section" });
+        return Err(Damage::Invalid("bytes after the compressed section"));
     }
     if written != length {
-        return Err(Damage::Invalid { what: "a section is shorter than it says" });
+        return Err(Damage::Invalid("a section is shorter than it says"));
     }
     Ok(out)
 }

@@ -10,7 +10,7 @@ use corniche_varints::zigzag;
 use crate::limits::{MAX_CLASSED_LINES, MAX_POINTS};
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope::{self, StoredSection};
-use crate::payload::number_codes::{Cursor, Planes};
+use crate::payload::number_codes::Cursor;
 use crate::payload::section_kind::Kind;
 
 #[cfg(feature = "write")]
@@ -58,14 +58,14 @@ pub(crate) fn decode_in(
 
 /// Reads the section's bytes.
 fn decode(bytes: &[u8], layer: ClassedLayer) -> Result<Vec<LineRecord>, Damage> {
-    let invalid = |what| Damage::Invalid { what };
+    let invalid = |what| Damage::Invalid(what);
     let cursor = &mut Cursor::new(bytes);
     let step = i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
     let step = step.ok_or(invalid(line_text!(layer, "the spacing of the " many "' lattice")))?;
     let count = cursor.bounded(MAX_CLASSED_LINES, line_text!(layer, "number of " many))?;
     let [classes, ways, lengths] =
         [cursor.planes(count)?, cursor.planes(count)?, cursor.planes(count)?];
-    let points_count = total(lengths)?;
+    let points_count = lengths.total(2, MAX_POINTS, "number of points")?;
     let [east, north] = [cursor.planes(points_count)?, cursor.planes(points_count)?];
     cursor.finish()?;
     let mut east = Coordinates { steps: east.iter(), step, last: 0 };
@@ -87,18 +87,6 @@ fn decode(bytes: &[u8], layer: ClassedLayer) -> Result<Vec<LineRecord>, Damage> 
     Ok(lines)
 }
 
-/// The number of points, refused beyond the limit before anything is allocated for it.
-fn total(lengths: Planes<'_>) -> Result<usize, Damage> {
-    let (mut sum, limit) = (0_u64, MAX_POINTS as u64);
-    for length in lengths.iter() {
-        sum = sum.saturating_add(length).saturating_add(2);
-        if sum > limit {
-            return Err(Damage::TooLarge { what: "number of points", length: sum, limit });
-        }
-    }
-    Ok(sum as usize)
-}
-
 /// Coordinates along an axis, each as the difference to the one before.
 struct Coordinates<S> {
     steps: S,
@@ -112,7 +100,7 @@ impl<S: Iterator<Item = u64>> Coordinates<S> {
         let place = self.last.checked_add(by).and_then(|last| last.checked_mul(self.step));
         let place = place.filter(|place| (-FARTHEST..=FARTHEST).contains(place));
         self.last = place.map_or(0, |place| place / self.step);
-        place.ok_or(Damage::Invalid { what: "a point far outside the tile" })
+        place.ok_or(Damage::Invalid("a point far outside the tile"))
     }
 }
 

@@ -36,10 +36,16 @@ impl<'a> Planes<'a> {
         })
     }
 
-    /// The bytes that stand for the numbers, without their number of planes.
-    #[cfg(feature = "write")]
-    pub(crate) fn bytes(self) -> &'a [u8] {
-        self.bytes
+    /// The sum of the numbers with `each` added to every one; refused beyond `most`, before anything is allocated for it.
+    pub(crate) fn total(self, each: u64, most: usize, what: &'static str) -> Result<usize, Damage> {
+        let mut sum = 0_u64;
+        for number in self.iter() {
+            sum = sum.saturating_add(number).saturating_add(each);
+            if sum > most as u64 {
+                return Err(Damage::TooLarge { what, length: sum, limit: most as u64 });
+            }
+        }
+        Ok(sum as usize)
     }
 
     /// Whether all numbers are 0 because no byte stands for any of them.
@@ -78,21 +84,21 @@ impl<'a> Cursor<'a> {
     pub(crate) fn varint(&mut self) -> Result<u64, Damage> {
         varint(&mut self.bytes).map_err(|bad| match bad {
             BadVarint::Cut => Damage::TooShort,
-            BadVarint::TooLarge => Damage::Invalid { what: "a varint of more than 64 bits" },
+            BadVarint::TooLarge => Damage::Invalid("a varint of more than 64 bits"),
         })
     }
 
     /// A varint that may not be above `limit`; `what` names it in the error.
     pub(crate) fn bounded(&mut self, limit: usize, what: &'static str) -> Result<usize, Damage> {
         let value = self.varint()?;
-        usize::try_from(value).ok().filter(|&value| value <= limit).ok_or(Damage::Invalid { what })
+        usize::try_from(value).ok().filter(|&value| value <= limit).ok_or(Damage::Invalid(what))
     }
 
     /// What [`put_planes`] wrote for `count` values. The caller bounds `count`.
     pub(crate) fn planes(&mut self, count: usize) -> Result<Planes<'a>, Damage> {
         let planes = self.byte()?;
         if planes > 8 {
-            return Err(Damage::Invalid { what: "more than eight byte planes" });
+            return Err(Damage::Invalid("more than eight byte planes"));
         }
         Ok(Planes { bytes: self.take(count * usize::from(planes))?, count })
     }
@@ -108,12 +114,21 @@ impl<'a> Cursor<'a> {
 
     /// Fails if bytes are left.
     pub(crate) fn finish(&self) -> Result<(), Damage> {
-        if self.is_empty() {
-            Ok(())
-        } else {
-            Err(Damage::Invalid { what: "bytes left over at the end" })
-        }
+        if self.is_empty() { Ok(()) } else { Err(Damage::Invalid("bytes left over at the end")) }
     }
+}
+
+/// Takes from the `room` that a section has left of `most`; `what` names it in the error.
+pub(crate) fn take_room(
+    room: &mut usize,
+    taken: usize,
+    most: usize,
+    what: &'static str,
+) -> Result<(), Damage> {
+    let limit = most as u64;
+    let too_large = Damage::TooLarge { what, length: limit + 1, limit };
+    *room = room.checked_sub(taken).ok_or(too_large)?;
+    Ok(())
 }
 
 #[cfg(test)]

@@ -108,13 +108,13 @@ fn hostile_sections_are_refused_within_limits() {
     for length in (0..good.len()).step_by(97).chain(0..8).chain([last_scan, good.len() - 2]) {
         assert!(decode_photo(&payload(&good[..length]), id()).is_err(), "{length} bytes");
     }
-    assert_eq!(damage(&[2, 0]), Damage::Invalid { what: "an unknown coding of colours" });
+    assert_eq!(damage(&[2, 0]), Damage::Invalid("an unknown coding of colours"));
     assert!(matches!(damage(&[1, MAX_PHOTO_LEVELS + 1]), Damage::TooLarge { .. }));
     let what = "an empty run of texels";
-    assert_eq!(damage(&[1, 0, 0, 0]), Damage::Invalid { what });
-    assert_eq!(damage(&[1, 0, 1, 0]), Damage::Invalid { what });
+    assert_eq!(damage(&[1, 0, 0, 0]), Damage::Invalid(what));
+    assert_eq!(damage(&[1, 0, 1, 0]), Damage::Invalid(what));
     let what = "a run of texels beyond the last";
-    assert_eq!(damage(&[1, 0, 0xff, 0xff, 0x7f]), Damage::Invalid { what });
+    assert_eq!(damage(&[1, 0, 0xff, 0xff, 0x7f]), Damage::Invalid(what));
     // The colours of a picture of another size.
     let mut other = section_of(&photo(1, |_, _| false), 80).bytes().to_vec();
     other[1] = 0;

@@ -9,7 +9,7 @@ use crate::payload::number_codes::Cursor;
 /// Points lie within this many lattice steps of the tile's corner, so that orientations stay exact.
 const REACH_STEPS: u64 = 1 << 55;
 
-pub(crate) const FAR: Damage = Damage::Invalid { what: "a point far away from its tile" };
+pub(crate) const FAR: Damage = Damage::Invalid("a point far away from its tile");
 
 /// Whether a point is within reach of the tile's corner.
 pub(crate) fn is_near(point: LatticePoint, corner: LatticePoint) -> bool {
@@ -22,7 +22,7 @@ pub(crate) fn decode_points(
     lines: impl ExactSizeIterator<Item = usize> + Clone,
     corner: LatticePoint,
 ) -> Result<Vec<LatticePoint>, Damage> {
-    const STILL: Damage = Damage::Invalid { what: "a segment without length" };
+    const STILL: Damage = Damage::Invalid("a segment without length");
     let count = lines.clone().sum();
     let (east, north) = (cursor.planes(count)?, cursor.planes(count)?);
     // Every point except a line's first takes at least one byte, so the number of points is bounded by the bytes.

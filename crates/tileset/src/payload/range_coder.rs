@@ -91,11 +91,6 @@ impl Writer {
         Self { out, low: 0, range: u32::MAX, held: 0, after_held: 0, is_first: true }
     }
 
-    /// How many bytes are certain by now, those in front of the string included.
-    pub(crate) fn written(&self) -> usize {
-        self.out.len()
-    }
-
     /// All bytes.
     pub(crate) fn finish(mut self) -> Vec<u8> {
         for _ in 0..5 {
@@ -177,12 +172,6 @@ impl<'a> Reader<'a> {
         reader
     }
 
-    /// Bytes taken so far; some of them may belong to bits that were not asked for yet.
-    #[cfg(feature = "write")]
-    pub(crate) fn taken(&self) -> usize {
-        self.taken
-    }
-
     /// Whether more was read than there is. A string that was written whole is never read beyond its end.
     pub(crate) fn is_past_end(&self) -> bool {
         self.taken > self.bytes.len()
@@ -200,11 +189,7 @@ impl<'a> Reader<'a> {
 
     /// Fails unless exactly the bytes that are there were read.
     pub(crate) fn finish(&self) -> Result<(), Damage> {
-        if self.is_exact() {
-            Ok(())
-        } else {
-            Err(Damage::Invalid { what: "the length of the coded bits" })
-        }
+        if self.is_exact() { Ok(()) } else { Err(Damage::Invalid("the length of the coded bits")) }
     }
 
     #[inline]

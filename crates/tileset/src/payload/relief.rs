@@ -110,26 +110,6 @@ impl Relief {
         &self.coded
     }
 
-    /// How many bytes its parts take: head, mask of gaps, mask of water, smooth band, rough bands of the five divisions from the coarsest to the
-    /// finest, slopes of the border. For measurements: a part's last bits may be counted with the next part.
-    #[cfg(feature = "write")]
-    #[must_use]
-    pub fn part_sizes(&self) -> [usize; 5 + LEVELS] {
-        let mut sizes = [0; 5 + LEVELS];
-        let mut cursor = Cursor::new(&self.coded);
-        // These bytes were read or written before, so they can be read.
-        let Ok(head) = Head::read(&mut cursor) else { return sizes };
-        sizes[0] = self.coded.len() - cursor.left();
-        let mut reader = Reader::new(&self.coded[sizes[0]..]);
-        let (mut number, mut before) = (0, 0);
-        let _ = Parts::new().code(&mut reader, &head, |reader| {
-            number += 1;
-            sizes[number] = reader.taken() - before;
-            before = reader.taken();
-        });
-        sizes
-    }
-
     /// Compresses the raster of a tile's level. `with_halo` has the tile's 257 × 257 nodes and one more on every side, `cell` is
     /// the distance of its nodes, `quantum_m` the package's height step. All tiles of a level must have the same `cell` and
     /// `quantum_m`. Equal heights make equal bytes, on every processor.
@@ -178,7 +158,7 @@ impl Relief {
         let border = border::of_raster(shown, cell);
         let mut parts = Parts { mask, water, square, border };
         let mut writer = Writer::new(head.to_bytes());
-        let units = parts.code(&mut writer, &head, |_| ()).map_err(unencodable)?;
+        let units = parts.code(&mut writer, &head).map_err(unencodable)?;
         Ok(Self::assemble(writer.finish(), &head, &units, parts))
     }
 
@@ -188,9 +168,9 @@ impl Relief {
         let head = Head::read(&mut cursor)?;
         let mut reader = Reader::new(&bytes[bytes.len() - cursor.left()..]);
         let mut parts = Parts::new();
-        let units = parts.code(&mut reader, &head, |_| ())?;
+        let units = parts.code(&mut reader, &head)?;
         if !reader.is_exact() {
-            return Err(Damage::Invalid { what: "the length of the relief" });
+            return Err(Damage::Invalid("the length of the relief"));
         }
         Ok(Self::assemble(bytes.to_vec(), &head, &units, parts))
     }
@@ -234,24 +214,15 @@ impl Parts {
         }
     }
 
-    /// Codes all of it, in either direction, and gives the heights in units. Calls `after_each` after both masks, the smooth band, each division
-    /// and the border.
-    fn code<B: Bits>(
-        &mut self,
-        bits: &mut B,
-        head: &Head,
-        mut after_each: impl FnMut(&B),
-    ) -> Result<Vec<i64>, Damage> {
+    /// Codes all of it, in either direction, and gives the heights in units.
+    fn code<B: Bits>(&mut self, bits: &mut B, head: &Head) -> Result<Vec<i64>, Damage> {
         if head.has_voids {
             code_mask(bits, &mut self.mask);
         }
-        after_each(bits);
         if head.has_water {
             code_mask(bits, &mut self.water);
         }
-        after_each(bits);
         code_smooth(bits, &mut self.square, SMOOTH);
-        after_each(bits);
         // What is learned of coarse divisions is shared: they have few numbers each.
         let mut numbers = vec![[const { Numbers::new() }; 3]; KINDS];
         for level in (0..LEVELS).rev() {
@@ -260,12 +231,10 @@ impl Parts {
                 let numbers = &mut numbers[level.min(KINDS - 1)][k];
                 code_band(bits, numbers, &mut self.square, band, parent);
             }
-            after_each(bits);
         }
         let mut units = self.square.clone();
         quantise::reconstruct(&mut units, &head.steps)?;
         border::code(bits, &mut self.border, &units, &self.mask, head.slope_factors)?;
-        after_each(bits);
         Ok(units)
     }
 }

@@ -7,7 +7,7 @@ use corniche_roads::RoadAttributes;
 
 use crate::limits::MAX_TEXT_BYTES;
 use crate::payload::damage::Damage;
-use crate::payload::number_codes::{Cursor, Planes};
+use crate::payload::number_codes::{Cursor, Planes, take_room};
 use crate::payload::tile_payload::RoadRecord;
 
 /// Columns of texts.
@@ -40,19 +40,14 @@ pub(crate) fn decode(bytes: &[u8], roads: &mut [RoadRecord]) -> Result<(), Damag
     for (column, indices) in text_columns.into_iter().enumerate() {
         for (road, index) in roads.iter_mut().zip(indices.iter()).filter(|(_, index)| *index > 0) {
             let text = usize::try_from(index - 1).ok().and_then(|index| known.get(index));
-            let text = text.ok_or(Damage::Invalid { what: "a text that does not exist" })?;
-            room = room.checked_sub(text.len()).ok_or(Damage::TooLarge {
-                what: "texts of all ways",
-                length: MAX_TEXT_BYTES as u64 + 1,
-                limit: MAX_TEXT_BYTES as u64,
-            })?;
+            let text = text.ok_or(Damage::Invalid("a text that does not exist"))?;
+            take_room(&mut room, text.len(), MAX_TEXT_BYTES, "texts of all ways")?;
             (*text).clone_into(texts_mut(&mut road.attributes)[column]);
         }
     }
     for ((road, lanes), width_mm) in roads.iter_mut().zip(lanes.iter()).zip(widths.iter()) {
-        let lanes =
-            u8::try_from(lanes).map_err(|_| Damage::Invalid { what: "a number of lanes" })?;
-        let width_mm = u32::try_from(width_mm).map_err(|_| Damage::Invalid { what: "a width" })?;
+        let lanes = u8::try_from(lanes).map_err(|_| Damage::Invalid("a number of lanes"))?;
+        let width_mm = u32::try_from(width_mm).map_err(|_| Damage::Invalid("a width"))?;
         road.attributes.lanes = NonZeroU8::new(lanes);
         road.attributes.width_mm = NonZeroU32::new(width_mm);
     }
@@ -70,9 +65,9 @@ fn known_texts<'a>(cursor: &mut Cursor<'a>, ways: usize) -> Result<Vec<&'a str>,
     for _ in 0..count {
         let length = cursor.bounded(cursor.left(), "length of a text")?;
         let text = str::from_utf8(cursor.take(length)?)
-            .map_err(|_| Damage::Invalid { what: "a text that is no UTF-8" })?;
+            .map_err(|_| Damage::Invalid("a text that is no UTF-8"))?;
         if texts.last().copied().unwrap_or_default() >= text {
-            return Err(Damage::Invalid { what: "texts are not sorted" });
+            return Err(Damage::Invalid("texts are not sorted"));
         }
         texts.push(text);
     }

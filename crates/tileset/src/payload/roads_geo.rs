@@ -11,7 +11,7 @@ use crate::limits::{MAX_LINE_VERTICES, MAX_POINTS, MAX_ROUTE_STEPS};
 use crate::payload::class_table::{self, Head, Heads, LineOrder};
 use crate::payload::coded_lines::LineCoder;
 use crate::payload::damage::Damage;
-use crate::payload::number_codes::Cursor;
+use crate::payload::number_codes::{Cursor, take_room};
 use crate::payload::points::decode_points;
 use crate::payload::range_coder::Reader;
 use crate::payload::roads_geo::surprises::{
@@ -111,7 +111,7 @@ impl Section<'_> {
         // Flag bits of the point count: 1 lead-in, 2 lead-out.
         let leads = [head.flags & 1 != 0, head.flags & 2 != 0];
         if points.len() < leads.iter().filter(|&&lead| lead).count() {
-            return Err(Damage::Invalid { what: "a line without points" });
+            return Err(Damage::Invalid("a line without points"));
         }
         let route = Route::new(self.surface, points, leads, &self.work);
         let vertices = decode_line(surprises, route, &mut self.vertices)?;
@@ -144,16 +144,12 @@ fn decode_line(
             route.guess()?
         };
         let Some(vertex) = vertex else { break };
-        *room = room.checked_sub(1).ok_or(Damage::TooLarge {
-            what: "vertices of all lines",
-            length: MAX_LINE_VERTICES as u64 + 1,
-            limit: MAX_LINE_VERTICES as u64,
-        })?;
+        take_room(room, 1, MAX_LINE_VERTICES, "vertices of all lines")?;
         vertices.push(vertex);
         route.go(vertex)?;
     }
     if left > 0 || route.next_source().is_some() || vertices.len() < 2 {
-        return Err(Damage::Invalid { what: "a line that ends before its points do" });
+        return Err(Damage::Invalid("a line that ends before its points do"));
     }
     // Lines are many and short, so the spare capacity of their vectors would double the memory.
     vertices.shrink_to_fit();
@@ -170,11 +166,8 @@ fn decode_surprise(
     route: &Route<'_>,
 ) -> Result<Option<DrapedVertex>, Damage> {
     let surface = route.surface();
-    let last_vertex = surface
-        .points()
-        .len()
-        .checked_sub(1)
-        .ok_or(Damage::Invalid { what: "a road without ground" })?;
+    let last_vertex =
+        surface.points().len().checked_sub(1).ok_or(Damage::Invalid("a road without ground"))?;
     let last_triangle = surface.triangles().len().saturating_sub(1);
     let kind = surprises.kind()?;
     let mut index = |last: usize, what| surprises.index(last, what);
@@ -182,10 +175,9 @@ fn decode_surprise(
         END => None,
         SOURCE => {
             let triangle = index(last_triangle, "a triangle under a road")?;
-            let point =
-                route.next_source().ok_or(Damage::Invalid { what: "a source point too many" })?;
+            let point = route.next_source().ok_or(Damage::Invalid("a source point too many"))?;
             if !surface.triangle_holds(triangle, point) {
-                return Err(Damage::Invalid { what: "a source point outside its triangle" });
+                return Err(Damage::Invalid("a source point outside its triangle"));
             }
             Some(DrapedVertex::Source { point, triangle })
         }
@@ -195,14 +187,14 @@ fn decode_surprise(
                 index(last_vertex, "an edge under a road")?,
             );
             if a >= b {
-                return Err(Damage::Invalid { what: "an edge under a road" });
+                return Err(Damage::Invalid("an edge under a road"));
             }
             Some(DrapedVertex::Crossing { a, b })
         }
         VERTEX => {
             Some(DrapedVertex::Vertex { vertex: index(last_vertex, "a vertex under a road")? })
         }
-        _ => return Err(Damage::Invalid { what: "a kind of surprise" }),
+        _ => return Err(Damage::Invalid("a kind of surprise")),
     })
 }
 

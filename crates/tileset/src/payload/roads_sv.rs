@@ -128,13 +128,13 @@ impl Section {
 fn range_m(low_q: i64, span: u64, quantum_m: f64) -> Result<[f64; 2], Damage> {
     let high_q = low_q.checked_add_unsigned(span).filter(|&high| (high as f64) < REACH_Q);
     let high_q = high_q.filter(|_| low_q as f64 > -REACH_Q);
-    let high_q = high_q.ok_or(Damage::Invalid { what: "a height range" })?;
+    let high_q = high_q.ok_or(Damage::Invalid("a height range"))?;
     Ok([low_q as f64 * quantum_m, high_q as f64 * quantum_m])
 }
 
 fn check_head(head: &Head) -> Result<(), Damage> {
     if head.points < 2 || head.flags != 0 {
-        return Err(Damage::Invalid { what: "a line of fewer than two points" });
+        return Err(Damage::Invalid("a line of fewer than two points"));
     }
     Ok(())
 }

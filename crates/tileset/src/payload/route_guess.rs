@@ -211,7 +211,7 @@ impl Line<'_> {
 fn locate(surface: &Surface, point: LatticePoint, work: &Work) -> Option<u32> {
     let mut found = None;
     let mut steps = 0;
-    surface.visit_triangles_near(LatticeBounds { min: point, max: point }, |triangle| {
+    surface.visit_triangles_near(LatticeBounds::at(point), |triangle| {
         steps += 1;
         // Those around one point come in ascending order.
         if found.is_none() && surface.triangle_holds(triangle, point) {

@@ -95,7 +95,7 @@ impl Sections {
     /// Plan lines for shadow volumes.
     pub const ROADS_SV: Self = Self::of(Kind::RoadsSv).and(Self::of(Kind::CodedSv));
     /// The attributes of each way, of both sections that have some.
-    pub const ATTRIBUTES: Self = Self(Self::of(Kind::Attributes).0 | Self::of(Kind::RoadTags).0);
+    pub const ATTRIBUTES: Self = Self::of(Kind::Attributes).and(Self::of(Kind::RoadTags));
     /// The raster of the level, for shading.
     pub const RELIEF: Self = Self::of(Kind::Relief);
     /// The photo. [`decode`](crate::decode) checks it; [`decode_photo`](crate::decode_photo) gives it.
@@ -122,7 +122,7 @@ impl Sections {
     const fn all() -> Self {
         let (mut all, mut k) = (Self::NONE, 0);
         while k < Kind::ALL.len() {
-            all.0 |= Self::of(Kind::ALL[k]).0;
+            all = all.and(Self::of(Kind::ALL[k]));
             k += 1;
         }
         all
@@ -145,7 +145,7 @@ impl BitOr for Sections {
     type Output = Self;
 
     fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
+        self.and(other)
     }
 }
 

@@ -30,7 +30,7 @@ impl<'f> SourceGrid<'f> {
         if step_m.iter().all(|&step_m| step_m > 0.0 && step_m.is_finite()) {
             Ok(Self { frame, step_m })
         } else {
-            Err(Damage::Invalid { what: "the steps of a grid of points" })
+            Err(Damage::Invalid("the steps of a grid of points"))
         }
     }
 

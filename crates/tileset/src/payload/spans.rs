@@ -11,11 +11,10 @@ use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_varints::zigzag;
 
 use crate::limits::{MAX_LINES, MAX_SPAN_POINTS};
-use crate::payload::class_table::take_points_of;
 use crate::payload::context::Context;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::envelope;
-use crate::payload::number_codes::Cursor;
+use crate::payload::number_codes::{Cursor, take_room};
 use crate::payload::points::decode_points;
 use crate::payload::section_kind::Kind;
 use crate::payload::terrain;
@@ -32,8 +31,7 @@ const TUNNEL: u64 = 4;
 const CLASS_BIT: u32 = 3;
 
 /// There is ground beneath bridges and above tunnels.
-pub(crate) const WITHOUT_GROUND: Damage =
-    Damage::Invalid { what: "spans in a tile without ground" };
+pub(crate) const WITHOUT_GROUND: Damage = Damage::Invalid("spans in a tile without ground");
 
 /// Reads the spans of a tile from the bytes of its payload; none if it has none. Memory is bounded by the
 /// [`limits`](crate::limits), whatever the bytes say. Triangles that points name are those of the tile's TIN.
@@ -75,7 +73,7 @@ pub(crate) fn decode(
     let mut points_of = Vec::with_capacity(count);
     for length in lengths.iter() {
         let points = usize::try_from(length).unwrap_or(usize::MAX).saturating_add(2);
-        take_points_of(MAX_SPAN_POINTS, &mut room, points)?;
+        take_room(&mut room, points, MAX_SPAN_POINTS, "points of a section")?;
         points_of.push(points);
     }
     let points = decode_points(cursor, points_of.iter().copied(), corner)?;
@@ -98,7 +96,7 @@ pub(crate) fn decode(
             points: heights.lift(of_run, code)?,
         };
         if runs.last().is_some_and(|last| last.key() > run.key()) {
-            return Err(Damage::Invalid { what: "runs are not sorted" });
+            return Err(Damage::Invalid("runs are not sorted"));
         }
         runs.push(run);
     }
@@ -108,7 +106,7 @@ pub(crate) fn decode(
 /// The class in a run's first number.
 fn class(code: u64) -> Result<FunctionalRoadClass, Damage> {
     let class = u8::try_from(code >> CLASS_BIT).ok().and_then(FunctionalRoadClass::new);
-    class.ok_or(Damage::Invalid { what: "a class of runs" })
+    class.ok_or(Damage::Invalid("a class of runs"))
 }
 
 /// Heights of points that are off the ground, each as the difference to the one before, and the triangles of the others.
@@ -137,14 +135,14 @@ impl<S: Iterator<Item = u64>, N: Iterator<Item = u64>> Heights<S, N> {
     fn height(&mut self) -> Result<SpanHeight, Damage> {
         let by = zigzag(self.steps.next().unwrap_or_default());
         let height = self.last.checked_add(by).filter(|&steps| is_height(steps));
-        self.last = height.ok_or(Damage::Invalid { what: "a height" })?;
+        self.last = height.ok_or(Damage::Invalid("a height"))?;
         Ok(SpanHeight::Steps(self.last))
     }
 
     fn triangle(&mut self) -> Result<SpanHeight, Damage> {
         let named = u32::try_from(self.named.next().unwrap_or_default()).ok();
         let triangle = named.filter(|&named| (named as usize) < self.triangles);
-        let triangle = triangle.ok_or(Damage::Invalid { what: "a triangle under a run" })?;
+        let triangle = triangle.ok_or(Damage::Invalid("a triangle under a run"))?;
         Ok(SpanHeight::Ground { triangle })
     }
 }

@@ -163,7 +163,7 @@ fn triangles_that_the_tile_does_not_have_are_refused() {
     };
     assert!(matches!(reads(triangles - 1), (Ok(_), Ok(_))));
     let (alone, all) = reads(triangles);
-    let damage = Damage::Invalid { what: "a triangle under a run" };
+    let damage = Damage::Invalid("a triangle under a run");
     for error in [alone.unwrap_err(), all.unwrap_err()] {
         assert_eq!((error.part, &error.damage), ("spans section", &damage));
     }

@@ -13,4 +13,4 @@ mod symbols;
 
 pub(crate) use decode::{decode, record_in};
 #[cfg(feature = "write")]
-pub(crate) use encode::{encode, part_sizes};
+pub(crate) use encode::encode;

@@ -103,7 +103,8 @@ fn a_created_file_is_what_is_written_to_memory() {
     let path = folder.path().join("three.pmtiles");
     let manifest = manifest(2);
     let context = PayloadContext::of(&manifest);
-    let mut writer = Writer::create(&path, &manifest).unwrap();
+    let mut writer =
+        Writer::of_file(std::fs::File::create(&path).unwrap(), &manifest, usize::MAX).unwrap();
     for id in ["0/0/0", "1/1/0", "2/3/1"].map(tile) {
         writer.add(id, &encode(&payload(id), &context).unwrap().bytes).unwrap();
     }
@@ -129,7 +130,7 @@ fn a_package_is_a_clustered_pmtiles_file_with_true_bounds() {
 fn few_tiles_keep_little_for_their_directory() {
     let wide = three_tiles();
     let mut bytes = Cursor::new(Vec::new());
-    let mut writer = Writer::new_for(&mut bytes, &manifest(2), 3).unwrap();
+    let mut writer = Writer::new(&mut bytes, &manifest(2), 3).unwrap();
     let package = open(wide.clone()).unwrap();
     for id in pollster::block_on(package.tile_ids()).unwrap() {
         writer.add(id, &pollster::block_on(package.tile(id)).unwrap().unwrap()).unwrap();
@@ -149,7 +150,7 @@ fn few_tiles_keep_little_for_their_directory() {
 fn many_tiles_need_leaf_directories_and_are_all_found() {
     let manifest = manifest(8);
     let mut bytes = Cursor::new(Vec::new());
-    let mut writer = Writer::new(&mut bytes, &manifest).unwrap();
+    let mut writer = Writer::new(&mut bytes, &manifest, usize::MAX).unwrap();
     let every = (0..256).flat_map(|x| (0..256).map(move |y| TileId::new(8, x, y).unwrap()));
     let mut ids: Vec<TileId> = every.filter(|id| (id.x() * 31 + id.y() * 17) % 3 != 0).collect();
     ids.sort_by_key(|&id| pmtiles_order(id));
@@ -183,7 +184,7 @@ fn order_is_level_then_hilbert_curve() {
 #[test]
 fn tiles_out_of_order_or_beyond_the_levels_are_refused() {
     let mut bytes = Cursor::new(Vec::new());
-    let mut writer = Writer::new(&mut bytes, &manifest(2)).unwrap();
+    let mut writer = Writer::new(&mut bytes, &manifest(2), usize::MAX).unwrap();
     let payload = [7; 20];
     writer.add(tile("1/1/1"), &payload).unwrap();
     assert!(matches!(writer.add(tile("1/0/0"), &payload), Err(WriteError::Order { .. })));
@@ -192,7 +193,10 @@ fn tiles_out_of_order_or_beyond_the_levels_are_refused() {
     assert!(matches!(writer.add(tile("2/3/3"), &payload[..19]), Err(WriteError::Tile { .. })));
     let mut bad = manifest(2);
     bad.point_scale = f64::NAN;
-    assert!(matches!(Writer::new(Cursor::new(Vec::new()), &bad), Err(WriteError::Manifest { .. })));
+    assert!(matches!(
+        Writer::new(Cursor::new(Vec::new()), &bad, usize::MAX),
+        Err(WriteError::Manifest { .. })
+    ));
 }
 
 #[test]

@@ -2,9 +2,8 @@
 //! says what cannot be kept.
 
 use corniche_geom::HeightGrid;
-use corniche_tin::{
-    Tin, TinSpec, TriangulateError, check_covers_ground, height_quantum_m, triangulate,
-};
+use corniche_testing::{check_covers_ground, check_tin};
+use corniche_tin::{Tin, TinSpec, TriangulateError, height_quantum_m, triangulate};
 use proptest::prelude::*;
 
 const GAP: f32 = f32::NAN;
@@ -16,7 +15,7 @@ fn spec(max_error_m: f64) -> TinSpec {
 /// Triangulates, and checks every promise by plain means.
 fn check(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, TriangulateError> {
     let tin = triangulate(heights, spec)?;
-    tin.check_invariants();
+    check_tin(&tin);
     check_covers_ground(&tin, heights);
     check_area(&tin, heights);
     check_vertices(&tin, heights, spec.quantum_m);
@@ -199,7 +198,7 @@ fn steps_of_1e30_metres_are_steps() {
     let scaled =
         TinSpec { max_error_m: spec.max_error_m * scale, quantum_m: spec.quantum_m * scale };
     let tin = triangulate(&high, scaled).unwrap();
-    tin.check_invariants();
+    check_tin(&tin);
     check_covers_ground(&tin, &high);
     // In steps, both are TINs of the same heights.
     check_vertices(&tin, &low, spec.quantum_m);
@@ -227,7 +226,7 @@ fn a_huge_tolerance_leaves_the_boundary_alone() {
     let noise = tile(17, |c, r| ((c * c * 7919 + r * r * 10_473 + c * r * 31) % 1009) as f32);
     for max_error_m in [2048.0, 1e9, 1e30, f64::MAX] {
         let tin = triangulate(&noise, spec(max_error_m)).unwrap();
-        tin.check_invariants();
+        check_tin(&tin);
         check_covers_ground(&tin, &noise);
         assert_eq!((tin.vertices().len(), tin.triangles().len()), (4, 2), "{max_error_m}");
     }
@@ -254,7 +253,7 @@ fn tiny_heights_are_zero() {
     let tiny = [4e-27_f32, -4e-27, f32::MIN_POSITIVE, 1e-45, 0.0, -0.0];
     let heights = tile(9, |c, r| tiny[(c * 3 + r) % tiny.len()]);
     let tin = triangulate(&heights, spec(2.0)).unwrap();
-    tin.check_invariants();
+    check_tin(&tin);
     assert_eq!((tin.vertices().len(), tin.triangles().len()), (4, 2));
     assert!(tin.vertices().iter().all(|vertex| vertex.height_q == 0));
 }

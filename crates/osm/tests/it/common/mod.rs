@@ -4,6 +4,8 @@
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 pub(crate) mod made;
+pub(crate) mod outlined;
+pub(crate) mod roads;
 
 use std::{
     cell::Cell,
@@ -17,12 +19,13 @@ use std::{
 use corniche_geom::LatticePoint;
 use corniche_osm::{
     Defect, ExtractSummary, Kept, KeptKinds, LayerSink, ReadOsmError, ReadRequest, ToLattice,
-    read_kept_roads, read_roads, read_roads_from,
+    read_kept_roads,
 };
 use corniche_presets::parse_frc_table;
 use corniche_roads::{FrcTable, Road};
 use corniche_store::{MemoryScratch, MemoryStore, Scratch};
 use rayon::ThreadPool;
+use roads::{check_summary, is_loss_of_way, read_roads, read_roads_from};
 
 /// The preset `config/frc/default.toml`.
 pub(crate) fn default_table() -> FrcTable {
@@ -70,7 +73,7 @@ impl Extract {
     }
 
     pub(crate) fn check_invariants(&self) {
-        self.summary.check_invariants();
+        check_summary(&self.summary);
         assert_eq!(self.summary.roads, self.roads.len() as u64);
         assert!(self.roads.is_sorted_by_key(|road| road.way_id));
         for road in &self.roads {
@@ -80,7 +83,7 @@ impl Extract {
         }
         // Every way that was lost stands in exactly one defect that says so, and no way is both lost and a road, unless its
         // id is used twice.
-        let lost = |defect: &&Defect| defect.is_loss_of_way();
+        let lost = |defect: &&Defect| is_loss_of_way(defect);
         let left_out = self.summary.left_out;
         let expected =
             left_out.unknown + left_out.area + left_out.duplicate + left_out.without_line;

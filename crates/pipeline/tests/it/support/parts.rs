@@ -95,8 +95,9 @@ pub(crate) fn write(
     manifest: &Manifest,
     tiles: &[(TileId, Vec<u8>)],
 ) -> Result<(), String> {
+    let file = std::fs::File::create(path).map_err(|error| error.to_string())?;
     let mut writer =
-        Writer::create_for(path, manifest, tiles.len()).map_err(|error| error.to_string())?;
+        Writer::of_file(file, manifest, tiles.len()).map_err(|error| error.to_string())?;
     for (id, bytes) in tiles {
         writer.add(*id, bytes).map_err(|error| error.to_string())?;
     }

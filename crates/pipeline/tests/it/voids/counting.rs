@@ -1,7 +1,8 @@
 //! What a package must hold, counted by nodes and cells of the raster that was written.
 
 use corniche_geom::{HeightGrid, NodeIndex, TileId};
-use corniche_tin::{Tin, check_covers_ground};
+use corniche_testing::{check_covers_ground, check_tin};
+use corniche_tin::Tin;
 
 use super::{
     MAX_ERROR_M,
@@ -71,7 +72,7 @@ fn check_tile(name: &str, built: &Built, truth: &Raster, id: TileId) -> u64 {
     let none = Tin::default();
     let ground = built.ground(id);
     let tin = ground.map_or(&none, |ground| &ground.tin);
-    tin.check_invariants();
+    check_tin(tin);
     // No wall and no hole: in plan the TIN is the ground cells of its level, to the last edge.
     check_covers_ground(tin, &level_heights);
     assert_eq!(ground.is_none(), tin.is_empty(), "{name}: {id}");

@@ -64,7 +64,7 @@ pub(crate) struct RingCoder {
     followed: Followed,
 }
 
-const OUTSIDE: Damage = Damage::Invalid { what: "a point outside the tile" };
+const OUTSIDE: Damage = Damage::Invalid("a point outside the tile");
 
 impl RingCoder {
     pub(crate) fn new(bounds: LatticeBounds, step: i64) -> Self {
@@ -169,7 +169,7 @@ impl RingCoder {
         is_first: bool,
         asked: Option<LatticePoint>,
     ) -> Result<LatticePoint, Damage> {
-        const UNKNOWN: Damage = Damage::Invalid { what: "a point that was not there before" };
+        const UNKNOWN: Damage = Damage::Invalid("a point that was not there before");
         let asked_known = asked.and_then(|point| self.first_at.get(&point).copied());
         let context = match self.followed {
             Followed::None => 0,

@@ -12,21 +12,21 @@ use crate::payload::number_codes::{Cursor, Planes};
 use crate::payload::range_coder::Reader;
 
 /// The columns of numbers that a section is made of, and its points.
-pub(crate) struct Columns<'a> {
+struct Columns<'a> {
     step: i64,
     count: usize,
-    pub(crate) classes: Planes<'a>,
-    pub(crate) objects: Planes<'a>,
-    pub(crate) name_bytes: Planes<'a>,
-    pub(crate) polygons: Planes<'a>,
-    pub(crate) names: &'a [u8],
-    pub(crate) rings: Planes<'a>,
-    pub(crate) points: Planes<'a>,
-    pub(crate) places: PlacesOfSection<'a>,
+    classes: Planes<'a>,
+    objects: Planes<'a>,
+    name_bytes: Planes<'a>,
+    polygons: Planes<'a>,
+    names: &'a [u8],
+    rings: Planes<'a>,
+    points: Planes<'a>,
+    places: PlacesOfSection<'a>,
 }
 
 /// The points of a section.
-pub(crate) enum PlacesOfSection<'a> {
+enum PlacesOfSection<'a> {
     /// East and north: steps on the coarse lattice, and what is left beside it.
     Planes { steps: [Planes<'a>; 2], beside: [Planes<'a>; 2] },
     /// Range-coded bits.
@@ -35,11 +35,11 @@ pub(crate) enum PlacesOfSection<'a> {
 
 impl<'a> Columns<'a> {
     /// Takes a section apart.
-    pub(crate) fn read(bytes: &'a [u8], is_coded: bool) -> Result<Self, Damage> {
+    fn read(bytes: &'a [u8], is_coded: bool) -> Result<Self, Damage> {
         let cursor = &mut Cursor::new(bytes);
         let step =
             i64::try_from(cursor.varint()?).ok().filter(|step| (1..=MOST_STEP).contains(step));
-        let step = step.ok_or(Damage::Invalid { what: "the spacing of the areas' lattice" })?;
+        let step = step.ok_or(Damage::Invalid("the spacing of the areas' lattice"))?;
         let count = cursor.bounded(MAX_AREAS, "number of areas")?;
         let [classes, objects, name_bytes, polygons] = [
             cursor.planes(count)?,
@@ -47,13 +47,13 @@ impl<'a> Columns<'a> {
             cursor.planes(count)?,
             cursor.planes(count)?,
         ];
-        let length = total(name_bytes, 0, cursor.left(), "bytes of all names")?;
+        let length = name_bytes.total(0, cursor.left(), "bytes of all names")?;
         let names = cursor.take(length)?;
-        let polygons_count = total(polygons, 1, MAX_AREA_RINGS, "number of polygons")?;
+        let polygons_count = polygons.total(1, MAX_AREA_RINGS, "number of polygons")?;
         let rings = cursor.planes(polygons_count)?;
-        let rings_count = total(rings, 1, MAX_AREA_RINGS, "number of rings")?;
+        let rings_count = rings.total(1, MAX_AREA_RINGS, "number of rings")?;
         let points = cursor.planes(rings_count)?;
-        let points_count = total(points, 3, MAX_POINTS, "number of points")?;
+        let points_count = points.total(3, MAX_POINTS, "number of points")?;
         let places = if is_coded {
             PlacesOfSection::Coded(cursor.take(cursor.left())?)
         } else {
@@ -113,9 +113,7 @@ pub(crate) fn decode(
                 let point = |_| {
                     let point = LatticePoint::new(east.next()?, north.next()?);
                     let is_inside = bounds.contains(point);
-                    is_inside
-                        .then_some(point)
-                        .ok_or(Damage::Invalid { what: "a point outside the tile" })
+                    is_inside.then_some(point).ok_or(Damage::Invalid("a point outside the tile"))
                 };
                 (0..count).map(point).collect()
             })
@@ -137,10 +135,10 @@ impl Columns<'_> {
         let heads = classes.iter().zip(objects.iter()).zip(name_bytes.iter()).zip(polygons.iter());
         for (((class, object), name_bytes), polygons) in heads {
             let number = u8::try_from(class >> 1).ok().and_then(AreaClass::from_number);
-            let class_of = number.ok_or(Damage::Invalid { what: "a class of areas" })?;
+            let class_of = number.ok_or(Damage::Invalid("a class of areas"))?;
             id = id.wrapping_add(zigzag(object));
             let name = str::from_utf8(names.take(name_bytes as usize)?)
-                .map_err(|_| Damage::Invalid { what: "a name that is no UTF-8" })?;
+                .map_err(|_| Damage::Invalid("a name that is no UTF-8"))?;
             let mut parts = Vec::new();
             for _ in 0..=polygons {
                 let mut of_part = Vec::new();
@@ -163,18 +161,6 @@ impl Columns<'_> {
 /// No coarse lattice is wider than a tile of 2^40 steps.
 const MOST_STEP: i64 = 1 << 40;
 
-/// The sum of numbers with `each` added to every one; refused beyond `most`, before anything is allocated for it.
-fn total(numbers: Planes<'_>, each: u64, most: usize, what: &'static str) -> Result<usize, Damage> {
-    let mut sum = 0_u64;
-    for number in numbers.iter() {
-        sum = sum.saturating_add(number).saturating_add(each);
-        if sum > most as u64 {
-            return Err(Damage::TooLarge { what, length: sum, limit: most as u64 });
-        }
-    }
-    Ok(sum as usize)
-}
-
 /// Coordinates along an axis.
 struct Places<S, B> {
     steps: S,
@@ -186,7 +172,7 @@ struct Places<S, B> {
 
 impl<S: Iterator<Item = u64>, B: Iterator<Item = u64>> Places<S, B> {
     fn next(&mut self) -> Result<i64, Damage> {
-        let wrong = Damage::Invalid { what: "a point outside the tile" };
+        let wrong = Damage::Invalid("a point outside the tile");
         let by = zigzag(self.steps.next().unwrap_or_default());
         let beside = i64::try_from(self.beside.next().unwrap_or_default());
         let last = self.last.checked_add(by);

@@ -5,13 +5,13 @@ use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, TileId};
 use corniche_varints::{push_varint, to_zigzag};
 
 use super::coded_rings::RingCoder;
-use super::decode::{self, PlacesOfSection};
+use super::decode;
 use super::record::AreaRecord;
 use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS, MAX_TEXT_BYTES};
-use crate::payload::builder::{self, Section};
-use crate::payload::damage::{Damage, DecodeError, EncodeError};
+use crate::payload::builder::Section;
+use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::envelope;
-use crate::payload::number_codes::{Planes, put_planes};
+use crate::payload::number_codes::put_planes;
 use crate::payload::range_coder::Writer;
 use crate::payload::section_kind::{AREAS, Kind};
 
@@ -107,37 +107,6 @@ fn coded_places(areas: &[AreaRecord], bounds: LatticeBounds, step: i64) -> Optio
         coder.end_ring();
     }
     Some(bits.finish())
-}
-
-/// How many bytes the parts of a payload's areas take, each compressed by itself: numbers of areas, rings and points; ids; names; steps from point to
-/// point, or all points where they are range-coded bits; what is left of points beside the coarse lattice. All 0 without areas. For measurements.
-///
-/// # Errors
-/// When the bytes are not a payload of tile `id`, or the section is damaged.
-pub fn area_part_sizes(payload: &[u8], id: TileId) -> Result<[usize; 5], DecodeError> {
-    envelope::read_part(payload, id, Kind::Areas.name(), |sections| {
-        let section = envelope::section_of_two(sections, AREAS)?;
-        section.map_or(Ok([0; 5]), |(bytes, is_coded)| part_sizes(&bytes, is_coded))
-    })
-}
-
-fn part_sizes(section: &[u8], is_coded: bool) -> Result<[usize; 5], Damage> {
-    let columns = decode::Columns::read(section, is_coded)?;
-    let decode::Columns { classes, name_bytes, polygons, rings, points, .. } = columns;
-    let bytes =
-        |planes: &[Planes<'_>]| planes.iter().flat_map(|one| one.bytes()).copied().collect();
-    let (steps, beside) = match columns.places {
-        PlacesOfSection::Planes { steps, beside } => (bytes(&steps), bytes(&beside)),
-        PlacesOfSection::Coded(bits) => (bits.to_vec(), Vec::new()),
-    };
-    let parts: [Vec<u8>; 5] = [
-        bytes(&[classes, name_bytes, polygons, rings, points]),
-        bytes(&[columns.objects]),
-        columns.names.to_vec(),
-        steps,
-        beside,
-    ];
-    Ok(parts.map(|part| builder::compressed_size(&part)))
 }
 
 fn check(areas: &[AreaRecord], bounds: &LatticeBounds, step: i64) -> Result<(), &'static str> {

@@ -31,7 +31,7 @@ pub(crate) fn decode(
         let length = cursor.bounded(count - at, "a run of texels beyond the last")?;
         // Only the first run may be empty, so that there are no more runs than texels.
         if length == 0 && !(has_photo && at == 0) {
-            return Err(Damage::Invalid { what: "an empty run of texels" });
+            return Err(Damage::Invalid("an empty run of texels"));
         }
         run(has_photo, at..at + length);
         at += length;

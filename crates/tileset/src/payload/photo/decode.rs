@@ -23,7 +23,7 @@ const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
 pub(crate) fn decode(bytes: &[u8]) -> Result<Photo, Damage> {
     let mut cursor = Cursor::new(bytes);
     if cursor.byte()? != JPEG {
-        return Err(Damage::Invalid { what: "an unknown coding of colours" });
+        return Err(Damage::Invalid("an unknown coding of colours"));
     }
     let levels = cursor.byte()?;
     if levels > MAX_PHOTO_LEVELS {
@@ -49,7 +49,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Photo, Damage> {
 
 /// Decodes a JPEG of three colours and known size.
 fn colours(jpeg: &[u8], side: usize) -> Result<Vec<u8>, Damage> {
-    const NOT_FITTING: Damage = Damage::Invalid { what: "a picture of another size or kind" };
+    const NOT_FITTING: Damage = Damage::Invalid("a picture of another size or kind");
     // A picture may have a scan for each colour, and the decoder does not miss one that was cut off.
     if !jpeg.ends_with(&END_OF_IMAGE) {
         return Err(Damage::TooShort);

@@ -78,7 +78,7 @@ pub(crate) fn code<B: Bits>(
             around[axis] = [difference.abs().min(MOST_STEPS), before];
             let steps = expected + difference;
             if steps.abs() >= MOST_STEPS {
-                return Err(Damage::Invalid { what: "a slope of the relief" });
+                return Err(Damage::Invalid("a slope of the relief"));
             }
             found[axis] = steps as i32;
         }

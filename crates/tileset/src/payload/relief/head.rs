@@ -55,16 +55,16 @@ impl Head {
     pub(crate) fn read(cursor: &mut Cursor<'_>) -> Result<Self, Damage> {
         let flags = cursor.byte()?;
         if flags > 3 {
-            return Err(Damage::Invalid { what: "the flags of the relief" });
+            return Err(Damage::Invalid("the flags of the relief"));
         }
         let [has_voids, has_water] = [flags & 1 == 1, flags & 2 == 2];
         let exponent = i32::try_from(zigzag(cursor.varint()?)).ok();
         let exponent = exponent
             .filter(|exponent| (-MOST_EXPONENT..=MOST_EXPONENT).contains(exponent))
-            .ok_or(Damage::Invalid { what: "the unit of the relief" })?;
+            .ok_or(Damage::Invalid("the unit of the relief"))?;
         let mut number = |least: u64, most: u64, what| {
             let value = cursor.varint()?;
-            if (least..=most).contains(&value) { Ok(value) } else { Err(Damage::Invalid { what }) }
+            if (least..=most).contains(&value) { Ok(value) } else { Err(Damage::Invalid(what)) }
         };
         let mut slope_factors = [0; 2];
         for factor in &mut slope_factors {

@@ -43,7 +43,7 @@ pub(crate) fn reconstruct(square: &mut [i64], steps: &[i64; BANDS]) -> Result<()
             is_small &= value.unsigned_abs() <= MOST;
         });
     }
-    let too_large = Err(Damage::Invalid { what: "a height of the relief" });
+    let too_large = Err(Damage::Invalid("a height of the relief"));
     if !is_small {
         return too_large;
     }

@@ -12,8 +12,8 @@ pub(crate) const SOURCE: u8 = 1;
 pub(crate) const CROSSING: u8 = 2;
 pub(crate) const VERTEX: u8 = 3;
 
-const COUNT: Damage = Damage::Invalid { what: "number of surprises" };
-const GAP: Damage = Damage::Invalid { what: "place of a surprise" };
+const COUNT: Damage = Damage::Invalid("number of surprises");
+const GAP: Damage = Damage::Invalid("place of a surprise");
 
 /// The surprises of a line, as they are read: their number; then for each a gap, a kind and indices.
 pub(crate) trait Surprises {
@@ -121,7 +121,7 @@ impl Surprises for CodedSurprises<'_, '_> {
 
     fn index(&mut self, last: usize, what: &'static str) -> Result<u32, Damage> {
         let index = self.coder.code_index(self.bits, 0);
-        self.check(index, last, Damage::Invalid { what }).map(|index| index as u32)
+        self.check(index, last, Damage::Invalid(what)).map(|index| index as u32)
     }
 }
 

@@ -73,7 +73,7 @@ impl Player<'_, '_> {
     fn vertex(&mut self) -> Result<u32, Damage> {
         let number = self.symbols.number(self.bits, 0)?;
         if number as usize > MAX_VERTICES {
-            return Err(Damage::Invalid { what: "a named vertex" });
+            return Err(Damage::Invalid("a named vertex"));
         }
         Ok(number)
     }
@@ -83,7 +83,7 @@ impl Guide for Player<'_, '_> {
     fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage> {
         let a = self.last + self.vertex()?;
         if a as usize >= found.vertices() {
-            return Err(Damage::Invalid { what: "a triangle's vertex" });
+            return Err(Damage::Invalid("a triangle's vertex"));
         }
         self.last = a;
         // Each corner is above the first, which is the smallest; the sum of two bounded numbers is in range.
@@ -93,7 +93,7 @@ impl Guide for Player<'_, '_> {
     fn corner(&mut self, guesses: &Guesses<'_, '_>) -> Result<Answer, Damage> {
         let Some(first) = guesses.first() else { return Ok(Answer::Nothing) };
         if self.bits.is_past_end() {
-            return Err(Damage::Invalid { what: "the length of the coded bits" });
+            return Err(Damage::Invalid("the length of the coded bits"));
         }
         match self.symbols.code(self.bits, guesses, first, NONE) {
             NONE => Ok(Answer::Nothing),
@@ -104,7 +104,7 @@ impl Guide for Player<'_, '_> {
                 loop {
                     let next = guesses
                         .best_but(&no)
-                        .ok_or(Damage::Invalid { what: "a guess that does not exist" })?;
+                        .ok_or(Damage::Invalid("a guess that does not exist"))?;
                     no.push(next.vertex);
                     if no.len() == usize::from(rank) {
                         return Ok(Answer::Guessed(next.vertex));

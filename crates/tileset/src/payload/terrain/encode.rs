@@ -20,24 +20,6 @@ use crate::payload::work_limit::Work;
 
 /// The section's bytes, or what of the ground cannot be encoded.
 pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'static str> {
-    encode_parts(terrain, scale).map(|(bytes, _)| bytes)
-}
-
-/// How many bytes the section's parts take: record, positions, triangles, heights, normals.
-pub(crate) fn part_sizes(terrain: &Terrain, scale: Scale) -> Result<[usize; 5], &'static str> {
-    let (bytes, ends) = encode_parts(terrain, scale)?;
-    let [record, positions, triangles, heights] = ends;
-    Ok([
-        record,
-        positions - record,
-        triangles - positions,
-        heights - triangles,
-        bytes.len() - heights,
-    ])
-}
-
-/// The section's bytes, and where its parts end but the last.
-fn encode_parts(terrain: &Terrain, scale: Scale) -> Result<(Vec<u8>, [usize; 4]), &'static str> {
     let vertices = terrain.tin.vertices();
     if vertices.len() != terrain.normals.len() {
         return Err("normals that are not one for each vertex");
@@ -65,7 +47,6 @@ fn encode_parts(terrain: &Terrain, scale: Scale) -> Result<(Vec<u8>, [usize; 4])
         normal_shift,
     };
     let mut bits = Writer::new(record.to_bytes());
-    let record_end = bits.written();
 
     let mut nodes_of_vertices =
         vertices.iter().map(|v| usize::from(v.row) * TILE_NODES + usize::from(v.column)).peekable();
@@ -76,7 +57,6 @@ fn encode_parts(terrain: &Terrain, scale: Scale) -> Result<(Vec<u8>, [usize; 4])
     if at.len() != vertices.len() {
         return Err("vertices that are not sorted");
     }
-    let positions_end = bits.written();
 
     // The same limit as a reader's: the writer takes at least as many steps as a reader.
     let work = Work::new(max_walk_steps(vertices.len(), triangles.len()));
@@ -87,15 +67,13 @@ fn encode_parts(terrain: &Terrain, scale: Scale) -> Result<(Vec<u8>, [usize; 4])
             Damage::TooMuchWork { .. } => "triangles that take readers too many steps to find",
             _ => "an edge with several triangles on one side",
         })?;
-    let triangles_end = bits.written();
 
     let mut heights: Vec<i32> = vertices.iter().map(|v| v.height_q >> height_shift).collect();
     code_heights(&mut bits, &at, &order, &mut heights).map_err(|_| "a height")?;
-    let heights_end = bits.written();
 
     let guesses = guess_normals(vertices, &found, scale, normal_shift);
     code_normals(&mut bits, &order, &guesses, normal_shift, &mut terrain.normals.clone());
-    Ok((bits.finish(), [record_end, positions_end, triangles_end, heights_end]))
+    Ok(bits.finish())
 }
 
 /// The powers of two that all heights, and all normals, are multiples of.
@@ -189,7 +167,7 @@ impl Guide for Recorder<'_> {
     fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage> {
         let rest = &self.triangles[self.next..];
         let skip = rest.iter().position(|&[a, b, _]| !found.has(a, b));
-        self.next += skip.ok_or(Damage::Invalid { what: "number of triangles" })?;
+        self.next += skip.ok_or(Damage::Invalid("number of triangles"))?;
         let [a, b, c] = self.triangles[self.next];
         // Canonical order: each triangle starts with its smallest vertex, and they are sorted.
         for gap in [a - self.last, b - a - 1, c - a - 1] {
@@ -207,7 +185,7 @@ impl Guide for Recorder<'_> {
             return if corner.is_none() {
                 Ok(Answer::Nothing)
             } else {
-                Err(Damage::Invalid { what: "a triangle's vertex" })
+                Err(Damage::Invalid("a triangle's vertex"))
             };
         };
         let symbol = corner.map_or(NONE, |actual| rank(actual, first, guesses));

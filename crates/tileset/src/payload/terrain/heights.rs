@@ -25,7 +25,7 @@ pub(crate) fn code_heights<B: Bits>(
         let wanted = i64::from(heights[vertex]) - i64::from(guess);
         let residual = numbers.code(bits, contexts, wanted);
         let height = i32::try_from(i64::from(guess) + residual);
-        previous = height.map_err(|_| Damage::Invalid { what: "a height" })?;
+        previous = height.map_err(|_| Damage::Invalid("a height"))?;
         heights[vertex] = previous;
         sizes[vertex] = residual.unsigned_abs().min(u64::from(u32::MAX)) as u32;
     }

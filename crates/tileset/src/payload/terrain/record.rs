@@ -45,7 +45,7 @@ impl Record {
         let (geometric_error_m, height_range_m) = (geometric_error_m?, [lowest_m?, highest_m?]);
         let uncovered_nodes = cursor.varint()?;
         check_measures(geometric_error_m, height_range_m, uncovered_nodes, scale)
-            .map_err(|what| Damage::Invalid { what })?;
+            .map_err(Damage::Invalid)?;
         let (triangles, limit) = (cursor.varint()?, MAX_TRIANGLES as u64);
         if triangles > limit {
             let what = "number of triangles";
@@ -53,10 +53,10 @@ impl Record {
         }
         let [height_shift, normal_shift] = cursor.array()?;
         if height_shift > MAX_HEIGHT_SHIFT {
-            return Err(Damage::Invalid { what: "the common factor of the heights" });
+            return Err(Damage::Invalid("the common factor of the heights"));
         }
         if normal_shift > MAX_NORMAL_SHIFT {
-            return Err(Damage::Invalid { what: "the common factor of the normals" });
+            return Err(Damage::Invalid("the common factor of the normals"));
         }
         let triangles = triangles as usize;
         Ok(Self {

@@ -93,6 +93,6 @@ impl Symbols {
     /// Codes a number of the kind that names vertices; what no vertex can have is refused.
     pub(crate) fn number<B: Bits>(&mut self, bits: &mut B, number: u32) -> Result<u32, Damage> {
         let number = self.numbers.code(bits, [0, 0], i64::from(number));
-        u32::try_from(number).map_err(|_| Damage::Invalid { what: "a named vertex" })
+        u32::try_from(number).map_err(|_| Damage::Invalid("a named vertex"))
     }
 }

@@ -64,7 +64,9 @@ pub(crate) fn package(folder: &Path) -> PathBuf {
         .collect();
     ids.sort_by_key(|id| pmtiles_order(*id));
     let path = folder.join("country.pmtiles");
-    let mut writer = Writer::create(&path, &manifest(&country)).unwrap();
+    let mut writer =
+        Writer::of_file(std::fs::File::create(&path).unwrap(), &manifest(&country), usize::MAX)
+            .unwrap();
     let context =
         PayloadContext { frame: country.frame, quantum_m: QUANTUM_M, metres_per_unit: [1.0; 2] };
     for id in ids {

@@ -1,37 +1,34 @@
-//! Checks that a TIN is valid and covers exactly its ground.
+//! What every TIN promises, checked by plain means.
 
 use std::collections::HashSet;
 
 use corniche_geom::HeightGrid;
+use corniche_tin::Tin;
 
-use crate::Tin;
-
-impl Tin {
-    /// Checks what every TIN must be: canonical order, distinct nodes, triangles counter-clockwise, every directed
-    /// edge at most once (so that two triangles at most meet in an edge, from both sides), and no vertex without a
-    /// triangle. For tests.
-    ///
-    /// # Panics
-    /// When a promise is broken, saying which.
-    pub fn check_invariants(&self) {
-        let again = Self::from_canonical(self.vertices().to_vec(), self.triangles().to_vec());
-        assert_eq!(again.as_ref(), Ok(self), "not canonical");
-        let mut edges = HashSet::new();
-        let mut used = vec![false; self.vertices().len()];
-        for &[a, b, c] in self.triangles() {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                assert!(edges.insert((from, to)), "edge {from}–{to} has two triangles on one side");
-                used[from as usize] = true;
-            }
+/// Checks what every TIN must be: canonical order, distinct nodes, triangles counter-clockwise, every directed
+/// edge at most once (so that two triangles at most meet in an edge, from both sides), and no vertex without a
+/// triangle.
+///
+/// # Panics
+/// When a promise is broken, saying which.
+pub fn check_tin(tin: &Tin) {
+    let again = Tin::from_canonical(tin.vertices().to_vec(), tin.triangles().to_vec());
+    assert_eq!(again.as_ref(), Ok(tin), "not canonical");
+    let mut edges = HashSet::new();
+    let mut used = vec![false; tin.vertices().len()];
+    for &[a, b, c] in tin.triangles() {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            assert!(edges.insert((from, to)), "edge {from}–{to} has two triangles on one side");
+            used[from as usize] = true;
         }
-        let unused = used.iter().position(|used| !used);
-        assert_eq!(unused, None, "a vertex without a triangle");
     }
+    let unused = used.iter().position(|used| !used);
+    assert_eq!(unused, None, "a vertex without a triangle");
 }
 
 /// Checks that `tin` covers exactly the ground of `heights` (with its halo, as
-/// [`triangulate`](crate::triangulate) takes it): as much area as the ground cells have, and every node on an
-/// edge with a triangle on one side only lies beside a cell without ground, or on the tile's border. For tests.
+/// [`triangulate`](corniche_tin::triangulate) takes it): as much area as the ground cells have, and every node on an
+/// edge with a triangle on one side only lies beside a cell without ground, or on the tile's border.
 ///
 /// # Panics
 /// When it does not.

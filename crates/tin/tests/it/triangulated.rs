@@ -1,12 +1,13 @@
 //! Every node of a tile lies within the tolerance of its TIN, and simple ground has few triangles.
 
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
 use std::collections::BTreeSet;
 
-use corniche_testing::srtm_heights;
+use corniche_geom::HeightGrid;
+use corniche_testing::{check_covers_ground, check_tin, srtm_heights};
+use corniche_tin::{Tin, TinSpec, TinVertex, TriangulateError, height_quantum_m, triangulate};
 use proptest::prelude::*;
-
-use super::*;
-use crate::{TinVertex, check_covers_ground};
 
 const SPEC: TinSpec = TinSpec { max_error_m: 2.0, quantum_m: 1.0 / 16.0 };
 const GAP: f32 = f32::NAN;
@@ -14,7 +15,7 @@ const GAP: f32 = f32::NAN;
 /// Triangulates and checks everything that is promised of any TIN.
 fn check(heights: &HeightGrid, spec: TinSpec) -> Tin {
     let tin = triangulate(heights, spec).unwrap();
-    tin.check_invariants();
+    check_tin(&tin);
     check_covers_ground(&tin, heights);
     check_error(&tin, heights, spec);
     tin

@@ -1,0 +1,213 @@
+/** Types of the module corniche-map: the element <corniche-map> and what its events carry. */
+
+/** A place to look at. What is left out stays as it is. */
+export interface Target {
+  /** Longitude, WGS84 degrees. */
+  lon: number;
+  /** Latitude, WGS84 degrees. */
+  lat: number;
+  /** Metres from the eye. */
+  distance?: number;
+  /** Degrees clockwise from north. */
+  heading?: number;
+  /** Degrees from straight down: 0 looks down, 90 at the horizon. */
+  pitch?: number;
+  /** Straight from above with parallel rays. */
+  above?: boolean;
+  /** From above, instead of the distance: metres in a pixel. */
+  pixel_m?: number;
+}
+
+/** What is seen. */
+export interface Place extends Target {
+  /** Metres, of the ground in the middle; absent where there is none. */
+  height?: number;
+  heading: number;
+  pitch: number;
+}
+
+export interface Settings {
+  /** How roads are drawn: as geometry, as shadow volumes, or not at all. */
+  roads: "geo" | "sv" | "none";
+  compare: "off" | "split" | "difference";
+  /** Where the line between GEO and SV is, 0 left to 1 right. */
+  divider: number;
+  /** Which classes are shown, in the order of `About.classes`. */
+  classes: boolean[];
+  /** A factor on the width of each class. */
+  widths: number[];
+  outline: "style" | "none" | "3" | "5";
+  /** One of `About.styles`, or the address of an own style: what holds a slash or ends in `.toml`. An own one is told once its file has been read. */
+  style: string;
+  /** How strongly photos are seen, 0 to 1; `null` as the style says. */
+  photo: number | null;
+  areas: boolean;
+  boundaries: boolean;
+  /** A factor on heights. */
+  exaggeration: number;
+  /** The largest error of the ground on the screen, pixels. */
+  error_px: number;
+  cell_px: number | null;
+  /** Samples per pixel, a side. */
+  samples: number;
+  wireframe: boolean;
+  inertia: boolean;
+}
+
+export interface About {
+  name: string;
+  src: string;
+  attribution: string[];
+  /** West, south, east, north in degrees. */
+  bounds: [number, number, number, number];
+  /** Lowest and highest ground, metres. */
+  heights: [number, number];
+  tiles: number;
+  levels: number;
+  styles: string[];
+  /** Names of the classes of roads, and their colours in the style shown. */
+  classes: { label: string; color: string }[];
+  /** Names of the boundaries that the map has and the style draws, and their colours. */
+  boundaries: { label: string; color: string }[];
+  has: { photo: boolean; areas: boolean; boundaries: boolean };
+  adapter: string;
+  /** Whether the processor draws. */
+  is_software: boolean;
+  max_side_px: number;
+  format_version: number;
+  bytes: number;
+}
+
+export interface FrameReport {
+  next: "now" | "asked";
+  is_settled: boolean;
+  view: Place | null;
+  cursor: { lon: number; lat: number; height: number } | null;
+  /** In the middle, of the screen's pixels and of CSS pixels. */
+  metres_per_pixel: number | null;
+  metres_per_point: number | null;
+  mode: "map" | "fly";
+  tiles: { drawn: number; missing: number; loading: number; full: boolean };
+  triangles: number;
+  segments: number;
+  /** Used and allowed. */
+  gpu_bytes: [number, number];
+  requests: number;
+  bytes: number;
+  progress: number;
+  recording_s: number | null;
+  is_playing: boolean;
+  notices: { kind: "warn" | "tell"; text: string }[];
+}
+
+export interface Pick {
+  lon: number;
+  lat: number;
+  height: number;
+  /** The road at the place. `way` is the id of the way in OpenStreetMap. */
+  road: null | { way: number; class: number; label: string; attributes: Record<string, string> };
+}
+
+export interface Failure {
+  kind:
+    | "no-webgpu"
+    | "no-adapter"
+    | "limits"
+    | "network"
+    | "not-found"
+    | "cors"
+    | "no-ranges"
+    | "compressed"
+    | "changed"
+    | "damaged"
+    | "foreign"
+    | "old-format"
+    | "no-ground"
+    | "off-ground"
+    | "out-of-memory"
+    | "device-lost"
+    | "files"
+    | "other";
+  message: string;
+  /** What can be done; may be empty. */
+  advice: string;
+}
+
+export interface CornicheMapEventMap {
+  /** The package is open. */
+  ready: CustomEvent<About>;
+  /** The camera came to rest. */
+  moveend: CustomEvent<Place>;
+  /** A click, a tap, a long press or Enter: what is there, or `null` over the sky. `preventDefault()` keeps the element's own card away. */
+  pick: CustomEvent<Pick | null>;
+  /** The map cannot be shown. */
+  error: CustomEvent<Failure>;
+}
+
+/** The element <corniche-map>. */
+export class CornicheMap extends HTMLElement {
+  /** The address of the package. */
+  src: string;
+  roads: Settings["roads"];
+  compare: Settings["compare"];
+  divider: number;
+  /** As `Settings.style`. Assigned again, the file of an own style is read again. */
+  mapStyle: string;
+  outline: Settings["outline"];
+  exaggeration: number;
+  errorPx: number;
+  cellPx: number | null;
+  samples: number;
+  photo: number | null;
+  areas: boolean;
+  boundaries: boolean;
+  wireframe: boolean;
+  inertia: boolean;
+  /** All settings. Those in an object that is assigned are changed, the others stay; a value that cannot be throws a RangeError. A file of a style that cannot be read is told in a notice. */
+  get settings(): Settings;
+  set settings(change: Partial<Settings>);
+  /** What the package is; `null` before `ready`. */
+  readonly about: About | null;
+  /** What the last frame said; `null` before the first. */
+  readonly report: FrameReport | null;
+  /** What is seen; an assignment jumps there. `null` before `ready`. */
+  get camera(): Place | null;
+  set camera(target: Target | null);
+  /** Moves to a place, with `jump` at once. */
+  lookAt(target: Target, options?: { jump?: boolean }): void;
+  /** Moves to "lon,lat". */
+  goTo(text: string): void;
+  command(name: "north-up" | "reset" | "toggle-fly" | "toggle-above"): void;
+  /** What is at a position, in CSS pixels from the corner of the element; `null` over the sky. Rejects, with `kind` and `message`, where the roads there cannot be fetched. */
+  pick(x: number, y: number): Promise<Pick | null>;
+  startRecording(): void;
+  /** Ends the recording and returns the flight as TOML. */
+  stopRecording(): string;
+  /** Flies a flight; fulfilled when it has begun. */
+  play(flight: string): Promise<void>;
+  /** The map as a PNG with its credits. */
+  picture(): Promise<Blob>;
+  /** The pixels as shown last: RGBA, rows from the top, without credits. */
+  readPixels(): Promise<{ width: number; height: number; data: Uint8Array }>;
+  /** Fulfilled when nothing moves, all tiles of the view are there, and the file of an own style has been read. */
+  settled(): Promise<void>;
+
+  addEventListener<K extends keyof CornicheMapEventMap>(
+    type: K,
+    listener: (this: CornicheMap, event: CornicheMapEventMap[K]) => unknown,
+    options?: boolean | AddEventListenerOptions,
+  ): void;
+  addEventListener(type: string, listener: EventListenerOrEventListenerObject | null, options?: boolean | AddEventListenerOptions): void;
+  removeEventListener<K extends keyof CornicheMapEventMap>(
+    type: K,
+    listener: (this: CornicheMap, event: CornicheMapEventMap[K]) => unknown,
+    options?: boolean | EventListenerOptions,
+  ): void;
+  removeEventListener(type: string, listener: EventListenerOrEventListenerObject | null, options?: boolean | EventListenerOptions): void;
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "corniche-map": CornicheMap;
+  }
+}
