@@ -88,12 +88,8 @@ pub(crate) enum OnOff {
 }
 
 impl OnOff {
-    /// The same for a window.
-    pub(crate) fn in_window(self) -> corniche_window::Visibility {
-        match self {
-            Self::On => corniche_window::Visibility::Shown,
-            Self::Off => corniche_window::Visibility::Hidden,
-        }
+    pub(crate) fn is_on(self) -> bool {
+        self == Self::On
     }
 }
 
