@@ -34,7 +34,7 @@ use corniche_viewer::{
     Detail, Lifted, Replay, ReplayError, ReplayOptions, default_flight,
     flight::{Flight, WorkingCrs},
     gpu::Gpu,
-    tiles::{BlockingPackage, MapPackage as _, Overlays},
+    tiles::{BlockingPackage, MapPackage as _, Overlays, TileDecoder},
 };
 use corniche_window::{Watched, watch};
 use corniche_work::{Observer as _, Stage};
@@ -142,14 +142,14 @@ impl Plan<'_> {
 
     fn fly(&self, watcher: Option<&Watcher<'_>>) -> Result<Drawn, Failure> {
         let gpu = Gpu::new()?;
-        messages::note(&format!("drawn by {}", gpu.adapter_name()));
+        messages::note(&format!("drawn by {}", gpu.adapter_name));
         let mut runs = Vec::new();
         for lod in once_each(&self.args.drawing.lod) {
             for roads in once_each(self.methods) {
                 runs.push(self.fly_once(&gpu, watcher, lod, roads)?);
             }
         }
-        Ok((runs, gpu.adapter_name().to_owned()))
+        Ok((runs, gpu.adapter_name.clone()))
     }
 
     fn fly_once(
@@ -173,9 +173,9 @@ impl Plan<'_> {
             ahead_s: drawing.ahead,
             frames: frames(self.args, self.flight)?,
         };
-        let package = packages::source(&self.args.from.package)?
-            .for_look(options.roads.method, &options.style);
-        let package = package.with_overlays(Arc::clone(&self.overlays));
+        let decoder = TileDecoder::default().for_look(options.roads.method, &options.style);
+        let decoder = decoder.with_overlays(Arc::clone(&self.overlays));
+        let package = packages::source(&self.args.from.package)?.with_decoder(decoder);
         let is_stopped = || {
             let is_gone = watcher.is_some_and(|watcher| watcher.is_gone.load(Ordering::SeqCst));
             is_gone || interrupt::is_noted()

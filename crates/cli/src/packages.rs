@@ -52,7 +52,7 @@ pub(crate) fn open_with_datum(
 
 /// Opens a package to draw it.
 pub(crate) fn source(place: &PackagePlace) -> Result<PackageSource, Failure> {
-    Ok(PackageSource::new(open(place)?)?)
+    Ok(PackageSource::of_file(open(place)?)?)
 }
 
 /// Tells, with `-v`, what was asked of web servers.

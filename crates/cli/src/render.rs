@@ -10,7 +10,8 @@ use corniche_styles::{OwnWidths, Style};
 use corniche_tileset::Manifest;
 use corniche_viewer::{
     LegendRequest, Mapping, RenderError, RenderReport, RenderRequest, RoadMethod, TitleFlaws,
-    Wireframe, render, tiles::MapPackage as _,
+    render,
+    tiles::{MapPackage as _, TileDecoder},
 };
 
 use self::picture_files::PictureFiles;
@@ -49,14 +50,14 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         style,
         legend: None,
         title: args.title.clone(),
-        wireframe: if args.wireframe { Wireframe::Shown } else { Wireframe::Hidden },
+        is_wireframe: args.wireframe,
     };
     let files = PictureFiles::create(args, &used)?;
     request.check()?;
-    let package =
-        packages::source(&args.from.package)?.for_look(request.roads.method, &request.style);
+    let package = packages::source(&args.from.package)?;
     let overlays = overlays::load(&args.look, package.manifest())?;
-    let package = package.with_overlays(overlays).with_mapping(mapping);
+    let decoder = TileDecoder::default().for_look(request.roads.method, &request.style);
+    let package = package.with_decoder(decoder.with_overlays(overlays).with_mapping(mapping));
     let scale = args.from_above.print_scale();
     let legend = args.legend.then(|| LegendRequest {
         road_labels: presets::class_labels(package.manifest()),

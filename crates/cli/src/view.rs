@@ -3,9 +3,14 @@
 use std::{fs, io, path::Path, sync::Arc};
 
 use corniche_styles::style_preset_names;
-use corniche_viewer::{RoadMethod, gpu::GpuError, tiles::MapPackage as _};
+use corniche_viewer::{
+    RoadMethod,
+    gpu::GpuError,
+    tiles::{MapPackage as _, TileDecoder},
+};
 use corniche_window::{
-    BeginTrace, Closed, End, NamedStyle, Reload, WindowError, WindowRequest, run as open_window,
+    BeginTrace, Closed, End, MapSettings, NamedStyle, Reload, WindowError, WindowRequest,
+    run as open_window,
 };
 
 use crate::{
@@ -38,7 +43,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
     }
     let package = packages::source(&args.from.package)?;
     let overlays = overlays::load(&args.look, package.manifest())?;
-    let package = Arc::new(package.with_overlays(overlays));
+    let package = Arc::new(package.with_decoder(TileDecoder::default().with_overlays(overlays)));
     let draw = args.draw.as_deref();
     let drawing = Drawing::begin(draw, &args.folder, &used, Arc::clone(&package))?;
     for named in &mut styles {
@@ -48,7 +53,15 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         name: args.from.package.file_name(),
         size_px: args.size,
         camera: args.camera.request(),
-        roads: args.look.road_options(roads),
+        settings: MapSettings {
+            photo: args.look.photo,
+            areas: args.look.areas,
+            boundaries: args.look.boundaries,
+            screen_space_error_px: args.ground.screen_space_error,
+            cell_px: args.ground.cell_px,
+            exaggeration: args.ground.exaggeration,
+            ..MapSettings::usual(args.look.road_options(roads))
+        },
         software_method: software_method(args),
         class_labels: presets::class_labels(package.manifest()),
         command_of: command_of(
@@ -57,19 +70,13 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
             args.look.allow_ballpark,
         ),
         styles,
-        photo: args.look.photo,
-        areas: args.look.areas,
         reload: reload(chosen, &args.look.overlay),
-        boundaries: args.look.boundaries,
         overlays: overlays::names(&args.look.overlay),
         drawn_lines: drawing.lines,
         save_drawing: drawing.save,
-        screen_space_error_px: args.ground.screen_space_error,
-        cell_px: args.ground.cell_px,
-        exaggeration: args.ground.exaggeration,
         samples_per_side: args.supersampling,
         budget: args.gpu.budget(),
-        inertia: args.motion,
+        has_inertia: args.motion,
         folder: args.folder.clone(),
         trace,
         is_stopped: Box::new(interrupt::is_noted),

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use corniche_viewer::{
-    CameraRequest, CapTest, Caps, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth, Wireframe,
+    CameraRequest, CapTest, Caps, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,
 };
-use corniche_window::{CommandOf, ShownView, Visibility};
+use corniche_window::{CommandOf, ShownView};
 
 use corniche_styles::Rgb;
 
@@ -37,9 +37,10 @@ pub(crate) fn command_of(
 
 fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<String> {
     let mut words = vec!["corniche".to_owned(), "render".to_owned(), package.to_owned()];
+    let settings = &shown.settings;
     let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
     option("-o", PICTURE.to_owned());
-    option("--roads", method(shown.roads.method).word().to_owned());
+    option("--roads", method(settings.roads.method).word().to_owned());
     option("--style", shown.style.clone());
     let [width, height] = shown.size_px;
     option("--size", format!("{width}x{height}"));
@@ -64,21 +65,21 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
         CameraRequest::Overview | CameraRequest::OverviewFromAbove { .. } => {}
     }
     let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
-    option("--exaggeration", shown.exaggeration.to_string());
-    option("--screen-space-error", shown.screen_space_error_px.to_string());
-    option("--cell-px", shown.cell_px.to_string());
-    option("--supersampling", shown.samples_per_side.to_string());
-    if let Some(photo) = shown.photo {
+    option("--exaggeration", settings.exaggeration.to_string());
+    option("--screen-space-error", settings.screen_space_error_px.to_string());
+    option("--cell-px", settings.cell_px.to_string());
+    option("--supersampling", settings.samples_per_side.to_string());
+    if let Some(photo) = settings.photo {
         option("--photo", photo.to_string());
     }
-    if shown.areas == Visibility::Hidden {
+    if !settings.areas {
         option("--areas", "off".to_owned());
     }
-    if shown.boundaries == Visibility::Hidden {
+    if !settings.boundaries {
         option("--boundaries", "off".to_owned());
     }
     for (number, overlay) in overlays.iter().enumerate() {
-        if shown.hidden_overlays.contains(&number) {
+        if settings.hidden_overlays.contains(&number) {
             continue;
         }
         // Without the files before it, it would be drawn in their colour.
@@ -86,10 +87,10 @@ fn words(package: &str, overlays: &[OverlayArg], shown: &ShownView) -> Vec<Strin
         let color = color.map(|color| format!(",color={}", hex(*color))).unwrap_or_default();
         option("--overlay", format!("{}{color}", overlay.text));
     }
-    for (name, value) in look(shown.roads) {
+    for (name, value) in look(settings.roads) {
         option(name, value.to_owned());
     }
-    if shown.wireframe == Wireframe::Shown {
+    if settings.is_wireframe {
         words.push("--wireframe".to_owned());
     }
     words

@@ -4,6 +4,8 @@ use clap::Parser as _;
 use corniche_remote::PackagePlace;
 use corniche_viewer::camera::Orientation;
 
+use corniche_window::MapSettings;
+
 use super::*;
 use crate::args::{Arguments, Command, RenderArgs};
 
@@ -17,19 +19,23 @@ fn shown(roads: RoadOptions) -> ShownView {
             orientation: Orientation { heading_deg: -123.456_78, pitch_deg: 61.234_56 },
         },
         size_px: [1234, 567],
-        roads,
+        settings: MapSettings {
+            photo: Some(0.25),
+            exaggeration: 1.5,
+            screen_space_error_px: 0.75,
+            samples_per_side: 3,
+            ..MapSettings::usual(roads)
+        },
         style: "my styles/night 'n day.toml".to_owned(),
-        photo: Some(0.25),
-        areas: Visibility::Shown,
-        boundaries: Visibility::Shown,
-        hidden_overlays: std::collections::BTreeSet::new(),
         overlay_colors: vec![[1.0, 0.5, 0.0], [0.0, 0.0, 1.0]],
-        exaggeration: 1.5,
-        screen_space_error_px: 0.75,
-        cell_px: f64::INFINITY,
-        samples_per_side: 3,
-        wireframe: Wireframe::Hidden,
     }
+}
+
+/// The same with other settings.
+fn with(shown: &ShownView, change: impl FnOnce(&mut MapSettings)) -> ShownView {
+    let mut shown = shown.clone();
+    change(&mut shown.settings);
+    shown
 }
 
 /// Two files, the second with a colour of its own.
@@ -64,7 +70,7 @@ fn the_command_draws_what_the_window_shows() {
     assert_eq!(numbers.map(f64::to_bits), [1.5, 0.75, f64::INFINITY].map(f64::to_bits));
     assert_eq!(args.look.photo.map(f32::to_bits), Some(0.25_f32.to_bits()));
     assert!(!args.wireframe && args.look.allow_ballpark);
-    assert!(read("a", &ShownView { wireframe: Wireframe::Shown, ..shown }).wireframe);
+    assert!(read("a", &with(&shown, |settings| settings.is_wireframe = true)).wireframe);
 }
 
 /// What is hidden is left out, and no other file takes its colour.
@@ -79,11 +85,12 @@ fn files_of_lines_are_drawn_as_they_are_shown() {
     let shown = ShownView { overlay_colors: colors, ..shown };
     let all = ["my tracks/a.gpx,color=#FF8000", "b.geojson,color=#00FF00", "c.gpx,color=#0000FF"];
     assert_eq!(texts(&shown), all);
-    let hidden_overlays = [0, 1].into_iter().collect();
-    assert_eq!(texts(&ShownView { hidden_overlays, ..shown.clone() }), all[2..]);
+    let hiding = |numbers: &[usize]| {
+        with(&shown, |settings| settings.hidden_overlays = numbers.iter().copied().collect())
+    };
+    assert_eq!(texts(&hiding(&[0, 1])), all[2..]);
     // An option for files of lines is not given without one.
-    let hidden_overlays = [0, 1, 2].into_iter().collect();
-    let without = ShownView { hidden_overlays, ..shown };
+    let without = hiding(&[0, 1, 2]);
     assert!(texts(&without).is_empty() && !read("a.pmtiles", &without).look.allow_ballpark);
 }
 
@@ -145,8 +152,8 @@ fn every_look_of_roads_is_read_as_it_was() {
     assert_eq!(count, 84);
     let none = shown(RoadOptions::of(RoadMethod::None));
     assert_eq!(read("a", &none).roads, Roads::None);
-    for areas in [Visibility::Shown, Visibility::Hidden] {
-        let shown = ShownView { areas, ..none.clone() };
+    for areas in [true, false] {
+        let shown = with(&none, |settings| settings.areas = areas);
         assert_eq!(read("a", &shown).look.areas, areas);
     }
 }

@@ -16,8 +16,10 @@ pub struct CameraControl {
     /// What moves it.
     pub navigator: Navigator,
     clicks: Clicks,
-    is_dragging: bool,
-    pixels_per_point: f64,
+    /// Whether a button of the mouse is held down that was pressed on the map.
+    pub is_dragging: bool,
+    /// Pixels to a point of the screen, as in the last frame.
+    pub pixels_per_point: f64,
     /// Time and view of the last frame.
     last_view: Option<(f64, View)>,
     /// When the camera moved last.
@@ -79,12 +81,6 @@ impl CameraControl {
         self.navigator.handle(input, now_s, ground);
     }
 
-    /// Pixels to a point of the screen, as in the last frame.
-    #[must_use]
-    pub fn pixels_per_point(&self) -> f64 {
-        self.pixels_per_point
-    }
-
     fn in_points(&self, at_px: DVec2) -> DVec2 {
         at_px / self.pixels_per_point
     }
@@ -130,12 +126,6 @@ impl CameraControl {
         now_s - self.moved_s
     }
 
-    /// Whether a button of the mouse is held down that was pressed on the map.
-    #[must_use]
-    pub fn is_dragging(&self) -> bool {
-        self.is_dragging
-    }
-
     /// What is seen now.
     #[must_use]
     pub fn view(&self) -> View {
@@ -145,7 +135,7 @@ impl CameraControl {
     /// Width and height of the window in the last frame, pixels.
     #[must_use]
     pub fn size_px(&self) -> [u32; 2] {
-        self.navigator.camera().size_px()
+        self.navigator.camera().size_px
     }
 
     /// The camera as flights have it: with its true height.

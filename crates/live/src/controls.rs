@@ -34,6 +34,6 @@ mod view;
 pub use self::{
     input::{Button, Input, Key, KeyState, Modifiers},
     navigator::Navigator,
-    options::{Inertia, Limits, Mode},
+    options::{Limits, Mode},
     view::{KnownGround, View},
 };

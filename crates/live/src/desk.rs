@@ -60,7 +60,7 @@ pub enum Errand {
 impl MapDesk {
     /// A button of the mouse goes down on the map.
     pub fn press(&mut self, button: Button, at_px: DVec2, modifiers: Modifiers, now_s: f64) {
-        let is_drawn = self.drawing.is_on() && button == Button::Left && !modifiers.control;
+        let is_drawn = self.drawing.is_on && button == Button::Left && !modifiers.control;
         if !is_drawn {
             self.session.press(button, at_px, modifiers, now_s);
         } else if !self.drawing.press(at_px, modifiers, &self.session) {
@@ -234,7 +234,7 @@ impl MapDesk {
     pub fn take_times(&mut self, canvas: &mut MapCanvas) -> Result<(), ReadBackError> {
         match canvas.times() {
             Ok(times) => self.passes = times,
-            Err(error) if canvas.gpu().is_lost() => return Err(error),
+            Err(error) if canvas.gpu.is_lost() => return Err(error),
             Err(error) => {
                 self.passes.clear();
                 self.notices.warn(format!("no pass was timed: {error}"));

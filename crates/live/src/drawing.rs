@@ -86,7 +86,8 @@ pub struct DrawingContent {
 
 /// The lines that a person draws, and the state of the tool.
 pub struct Drawing {
-    is_on: bool,
+    /// Whether the mouse draws.
+    pub is_on: bool,
     tool: Tool,
     document: Document,
     /// Lines that have no place in the package's CRS: they cannot be shown, and are saved as they are.
@@ -142,16 +143,10 @@ impl Drawing {
         }
     }
 
-    /// Whether the mouse draws.
-    #[must_use]
-    pub fn is_on(&self) -> bool {
-        self.is_on
-    }
-
     /// Grows with every change of a line.
     #[must_use]
     pub fn revision(&self) -> u64 {
-        self.document.revision()
+        self.document.revision
     }
 
     /// The left button goes down while drawing. Whether the map stays where it is.
@@ -257,7 +252,7 @@ impl Drawing {
         DrawingContent {
             is_on: self.is_on,
             handles,
-            lines: self.document.lines().len(),
+            lines: self.document.lines.len(),
             is_picked: picked.is_some(),
             can_step: self.document.can_step(),
             is_changed: self.document.is_changed(),
@@ -276,11 +271,11 @@ impl Drawing {
         notices: &mut Notices,
     ) {
         self.laid.evict(evicted);
-        let is_changed = self.laid_revision != self.document.revision();
+        let is_changed = self.laid_revision != self.document.revision;
         if !is_changed && !is_new {
             return;
         }
-        self.laid_revision = self.document.revision();
+        self.laid_revision = self.document.revision;
         let begun_s = (self.clock_s)();
         let tiles = session.tiles.resident();
         let relaid = self.laid.update(&self.document, tiles, session.manifest());
@@ -318,7 +313,7 @@ impl Drawing {
             is_area: line.is_area,
             points_deg: line.points.iter().map(|point| point.lon_lat_deg).collect(),
         };
-        let drawn = self.document.lines().iter().map(line);
+        let drawn = self.document.lines.iter().map(line);
         let lines: Vec<DrawnLine> = drawn.chain(self.unplaced.iter().cloned()).collect();
         let saved = (self.save)(&lines);
         if saved.is_ok() {
@@ -343,7 +338,7 @@ impl<'a> SeenPoints<'a> {
             camera: control.view().camera(control.size_px()),
             ground: session.ground(),
             manifest: session.manifest(),
-            pixels_per_point: control.pixels_per_point(),
+            pixels_per_point: control.pixels_per_point,
         }
     }
 

@@ -68,7 +68,8 @@ impl Redraw {
 /// Measures how long frames take.
 #[derive(Default)]
 pub struct FramePace {
-    times: FrameTimes,
+    /// How long the last frames took.
+    pub times: FrameTimes,
     /// When the last frame began, if it drew the map and another frame was to follow; and how much later that may begin.
     drawing_since_s: Option<(f64, f64)>,
 }
@@ -87,12 +88,6 @@ impl FramePace {
         // A frame that is asked for at once begins as soon as the last one is shown, however long that takes.
         let most_s = if is_busy { f64::INFINITY } else { PAUSE_S };
         self.drawing_since_s = is_one_of_many.then_some((now_s, most_s));
-    }
-
-    /// How long the last frames took.
-    #[must_use]
-    pub fn times(&self) -> &FrameTimes {
-        &self.times
     }
 }
 

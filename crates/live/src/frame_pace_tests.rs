@@ -15,7 +15,7 @@ fn times_ms(frames: &[(f64, bool, bool)]) -> Vec<f64> {
     for &(now_s, is_one_of_many, is_busy) in frames {
         pace.note(now_s, is_one_of_many, is_busy);
     }
-    pace.times().iter().collect()
+    pace.times.iter().collect()
 }
 
 #[test]

@@ -30,7 +30,8 @@ pub struct GroundProbe {
     cursor_px: Option<DVec2>,
     /// The ground under the cursor, and the side of a pixel there in world metres.
     cursor: Option<(GroundPoint, f64)>,
-    middle_pixel_m: Option<f64>,
+    /// Side of a pixel on the ground in the middle of the window, world metres.
+    pub middle_pixel_m: Option<f64>,
 }
 
 impl GroundProbe {
@@ -50,7 +51,7 @@ impl GroundProbe {
             Some((hit, camera.pixel_at_depth_m(depth_m)))
         };
         if is_new {
-            let [width, height] = camera.size_px().map(f64::from);
+            let [width, height] = camera.size_px.map(f64::from);
             self.middle_pixel_m =
                 pixel_m(DVec2::new(width, height) / 2.0).map(|(_, pixel_m)| pixel_m);
         }
@@ -76,11 +77,5 @@ impl GroundProbe {
     #[must_use]
     pub fn cursor_pixel_m(&self) -> Option<f64> {
         self.cursor.map(|(_, pixel_m)| pixel_m)
-    }
-
-    /// Side of a pixel on the ground in the middle of the window, world metres.
-    #[must_use]
-    pub fn middle_pixel_m(&self) -> Option<f64> {
-        self.middle_pixel_m
     }
 }

@@ -31,8 +31,9 @@ mod loader_threads;
 mod map_canvas;
 mod notices;
 mod picked_road;
-#[doc(hidden)]
-pub mod polled_loader;
+#[cfg(test)]
+#[path = "polled_loader_tests.rs"]
+mod polled_loader;
 mod session;
 mod session_json;
 mod settings;
@@ -61,7 +62,7 @@ pub use {
     picked_road::{PickPlace, PickedRoad},
     session::{Session, SessionStart, SessionStep},
     session_json::FrameRest,
-    settings::{Compare, MapSettings, Refinement, Visibility, range},
+    settings::{Compare, MapSettings, range},
     settings_json::{SettingChanges, SettingsRecord},
     shown_view::{CommandOf, ShownView},
     style_list::{NamedStyle, Reload, StyleList},

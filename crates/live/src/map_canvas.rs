@@ -6,7 +6,7 @@ use std::{ops::Range, rc::Rc};
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions, Wireframe,
+    FrameView, RoadMethod, RoadOptions,
     camera::Camera,
     gpu::{
         Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBack, ReadBackError, Renderer,
@@ -44,7 +44,7 @@ pub struct MapScene {
     /// Latitude of the middle of the package.
     pub latitude_deg: f64,
     /// Whether the edges of triangles are drawn.
-    pub wireframe: Wireframe,
+    pub is_wireframe: bool,
     /// The tiles to draw.
     pub drawn: Vec<Drawn>,
     /// Samples per pixel along each side.
@@ -68,14 +68,14 @@ impl MapScene {
             wall_m: FrameView::wall_beside_m(self.height_range_m),
             cell_px: self.cell_px,
             latitude_deg: self.latitude_deg,
-            wireframe: self.wireframe,
+            is_wireframe: self.is_wireframe,
         }
     }
 
     /// Whether its pictures have all the pixels of what shows them.
     #[must_use]
     pub fn is_full(&self) -> bool {
-        self.camera.size_px() == self.shown_px
+        self.camera.size_px == self.shown_px
     }
 }
 
@@ -91,14 +91,16 @@ pub struct Counts {
 /// What a map has on the graphics card. When the device is lost, a new canvas takes the place of
 /// the old one.
 pub struct MapCanvas {
-    gpu: Rc<Gpu>,
+    /// The device.
+    pub gpu: Rc<Gpu>,
     renderer: Renderer,
     tiles: ResidentTiles,
     /// One for each method that is shown.
     methods: Vec<MethodPicture>,
     difference: Option<Picture>,
     shown: Option<MapScene>,
-    counts: Counts,
+    /// Numbers of the scene that was drawn last.
+    pub counts: Counts,
 }
 
 /// The picture of one method.
@@ -122,12 +124,6 @@ impl MapCanvas {
             shown: None,
             counts: Counts::default(),
         }
-    }
-
-    /// The device.
-    #[must_use]
-    pub fn gpu(&self) -> &Rc<Gpu> {
-        &self.gpu
     }
 
     /// Removes tiles and uploads others.
@@ -173,9 +169,9 @@ impl MapCanvas {
         }
         let before = self.difference.take();
         if let (Compare::Difference, [first, second]) = (scene.compare, &self.methods[..]) {
-            let (size_px, samples) = (scene.camera.size_px(), scene.samples_per_side);
+            let (size_px, samples) = (scene.camera.size_px, scene.samples_per_side);
             let fits = |picture: &Picture| {
-                (picture.size_px(), picture.samples_per_side()) == (size_px, samples)
+                (picture.size_px, picture.samples_per_side) == (size_px, samples)
             };
             let picture = match before.filter(fits) {
                 Some(picture) => picture,
@@ -191,9 +187,10 @@ impl MapCanvas {
 
     /// Makes room for the picture at `place`.
     fn fit(&mut self, place: usize, scene: &MapScene) -> Result<(), GpuError> {
-        let (size_px, samples) = (scene.camera.size_px(), scene.samples_per_side);
+        let (size_px, samples) = (scene.camera.size_px, scene.samples_per_side);
         let fits = |method: &MethodPicture| {
-            (method.targets.size_px(), method.targets.samples_per_side()) == (size_px, samples)
+            (method.targets.picture.size_px, method.targets.picture.samples_per_side)
+                == (size_px, samples)
         };
         if self.methods.get(place).is_some_and(fits) {
             return Ok(());
@@ -215,7 +212,7 @@ impl MapCanvas {
         let view = scene.view(roads);
         let tiles = self.tiles.draw_list(&scene.drawn);
         for tile in &tiles {
-            self.counts.triangles += tile.buffers.triangles();
+            self.counts.triangles += tile.buffers.triangles;
             self.counts.segments += tile.road_segments(&view);
         }
         // Times of another method do not count for this one.
@@ -236,28 +233,22 @@ impl MapCanvas {
         self.shown = None;
     }
 
-    /// Numbers of the scene that was drawn last.
-    #[must_use]
-    pub fn counts(&self) -> Counts {
-        self.counts
-    }
-
     /// The pictures that are shown, each with the columns where it is seen. Of two pictures beside
     /// each other, the second is seen from the share `divider` of the width on.
     #[must_use]
     pub fn parts(&self, divider: f32) -> Vec<(&Picture, Range<u32>)> {
         let Some(scene) = &self.shown else { return Vec::new() };
-        let [width, _] = scene.camera.size_px();
+        let [width, _] = scene.camera.size_px;
         if let Some(picture) = &self.difference {
             return vec![(picture, 0..width)];
         }
         match &self.methods[..] {
             [left, right] => {
                 let column = ((divider * width as f32).round() as u32).min(width);
-                let [left, right] = [left, right].map(|method| method.targets.picture());
+                let [left, right] = [left, right].map(|method| &method.targets.picture);
                 vec![(left, 0..column), (right, column..width)]
             }
-            all => all.iter().take(1).map(|one| (one.targets.picture(), 0..width)).collect(),
+            all => all.iter().take(1).map(|one| (&one.targets.picture, 0..width)).collect(),
         }
     }
 
@@ -266,7 +257,7 @@ impl MapCanvas {
     pub fn begin_read(&self, divider: f32) -> Option<PixelReading> {
         let parts = self.parts(divider);
         let (first, _) = parts.first()?;
-        let size_px = first.size_px();
+        let size_px = first.size_px;
         let part = |(picture, columns): (&Picture, _)| (picture.begin_read(&self.gpu), columns);
         Some(PixelReading::new(parts.into_iter().map(part).collect(), size_px))
     }
@@ -298,7 +289,8 @@ impl MapCanvas {
 /// Pixels on their way back from the graphics card, of one picture or of several beside each other.
 pub struct PixelReading {
     parts: Vec<(ReadBack, Range<u32>)>,
-    size_px: [u32; 2],
+    /// Width and height, pixels.
+    pub size_px: [u32; 2],
 }
 
 impl PixelReading {
@@ -306,12 +298,6 @@ impl PixelReading {
     #[must_use]
     pub fn new(parts: Vec<(ReadBack, Range<u32>)>, size_px: [u32; 2]) -> Self {
         Self { parts, size_px }
-    }
-
-    /// Width and height, pixels.
-    #[must_use]
-    pub fn size_px(&self) -> [u32; 2] {
-        self.size_px
     }
 
     /// Whether all pixels are there; never waits.

@@ -65,7 +65,7 @@ impl Notices {
     /// drawn by a graphics card.
     pub fn warn_of_software(&mut self, gpu: &Gpu, roads: RoadMethod, asked: RoadMethod) {
         if gpu.is_software() {
-            let adapter = gpu.adapter_name();
+            let adapter = &gpu.adapter_name;
             let roads = if roads == asked {
                 ""
             } else {

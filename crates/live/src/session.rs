@@ -23,12 +23,12 @@ use glam::DVec2;
 
 use crate::{
     camera_control::CameraControl,
-    controls::{Button, Inertia, Input, KnownGround as _, Modifiers, Navigator, View},
+    controls::{Button, Input, KnownGround as _, Modifiers, Navigator, View},
     flights::Flights,
     ground_probe::{GroundPoint, GroundProbe},
     map_canvas::{MapCanvas, MapScene},
     picked_road::PickPlace,
-    settings::{MapSettings, Refinement},
+    settings::MapSettings,
     style_list::StyleList,
     tiles::{Changes, ShownGround, TileLoader, Tiles},
     views::{limits, place_in_world, request_of_view, view_on},
@@ -60,7 +60,7 @@ pub struct SessionStart {
     /// Pixels to a point of the screen.
     pub pixels_per_point: f32,
     /// How movements end.
-    pub inertia: Inertia,
+    pub has_inertia: bool,
 }
 
 /// A map that a person moves. Times are seconds of one clock, positions pixels of what shows the
@@ -120,7 +120,7 @@ impl Session {
     pub fn new(start: SessionStart) -> Self {
         let SessionStart { package, height_range_m, size_px, pixels_per_point, .. } = start;
         let manifest = package.manifest();
-        let navigator = Navigator::new(start.home, limits(manifest), size_px, start.inertia);
+        let navigator = Navigator::new(start.home, limits(manifest), size_px, start.has_inertia);
         let quantum_m = manifest.vertical.quantum_m;
         Self {
             tiles: Tiles::new(
@@ -285,7 +285,7 @@ impl Session {
         let at_place_m = at.and_then(|at| {
             let known_m = ground.height(at).map(|height| height / scale);
             // Before the first tiles are there, any height will do.
-            let is_inside = manifest.data_bounds.contains(at) && self.tiles.drawn().is_empty();
+            let is_inside = manifest.data_bounds.contains(at) && self.tiles.drawn.is_empty();
             known_m.or_else(|| is_inside.then(|| f64::midpoint(heights_m[0], heights_m[1])))
         });
         let extent = MapExtent::of_data(manifest.data_bounds, heights_m);
@@ -329,8 +329,8 @@ impl Session {
         let hit = self.ground().hit(start, ray)?;
         let (_, depth_m) = camera.project(hit)?;
         let [x, y] = [hit.x, hit.y];
-        let mut drawn = self.tiles.drawn().iter().map(|drawn| drawn.id);
-        let reach_points = PICK_POINTS * self.camera.pixels_per_point();
+        let mut drawn = self.tiles.drawn.iter().map(|drawn| drawn.id);
+        let reach_points = PICK_POINTS * self.camera.pixels_per_point;
         Some(PickPlace {
             point: GroundPoint {
                 lon_lat_deg: manifest.coordinates.wgs84_from_working([x, y]),
@@ -359,11 +359,12 @@ impl Session {
         self.place_again(size_px);
         let ground = self.package.ground(&self.tiles, &self.settings);
         let camera = self.camera.advance(now_s, size_px, pixels_per_point, &ground);
-        let ahead = self.camera.look_ahead(now_s, camera.size_px());
+        let ahead = self.camera.look_ahead(now_s, camera.size_px);
         let quality = self.settings.quality(self.manifest(), self.style());
-        let Changes { evict, upload, is_under_way } = match self.settings.refinement {
-            Refinement::Live => self.tiles.choose(&camera, ahead.as_ref(), quality),
-            Refinement::Frozen => Changes::default(),
+        let Changes { evict, upload, is_under_way } = if self.settings.is_frozen {
+            Changes::default()
+        } else {
+            self.tiles.choose(&camera, ahead.as_ref(), quality)
         };
         canvas.change(&evict, &upload);
         let has_new_tiles = !upload.is_empty();
@@ -378,13 +379,13 @@ impl Session {
     pub fn begin_again(&mut self) {
         self.tiles.begin_again();
         // A frozen choice of tiles would stay empty.
-        self.settings.refinement = Refinement::Live;
+        self.settings.is_frozen = false;
     }
 
     /// Whether the map is drawn coarsely for a moment, because a processor draws and the camera moves.
     #[must_use]
     pub fn is_hurrying(&self, canvas: &MapCanvas, now_s: f64) -> bool {
-        canvas.gpu().is_software() && self.camera.at_rest_s(now_s) < HURRY_S
+        canvas.gpu.is_software() && self.camera.at_rest_s(now_s) < HURRY_S
     }
 
     /// What a picture of this size shows.
@@ -402,8 +403,8 @@ impl Session {
             height_range_m: self.package.height_range_m,
             cell_px: settings.cell_px,
             latitude_deg: manifest.wgs84_bounds.center()[1],
-            wireframe: settings.wireframe(),
-            drawn: self.tiles.drawn().to_vec(),
+            is_wireframe: settings.is_wireframe,
+            drawn: self.tiles.drawn.clone(),
             samples_per_side,
             revision: 0,
         }

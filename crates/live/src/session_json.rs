@@ -45,7 +45,7 @@ impl Session {
                 "areas": manifest.areas.is_some(),
                 "boundaries": manifest.boundaries.is_some(),
             },
-            "adapter": gpu.adapter_name(),
+            "adapter": &gpu.adapter_name,
             "is_software": gpu.is_software(),
             "max_side_px": gpu.max_side_px(),
             "format_version": FORMAT_VERSION,
@@ -109,10 +109,10 @@ impl Session {
         now_s: f64,
     ) -> (Value, bool) {
         let Self { tiles, camera, flights, probe, .. } = self;
-        let (drawn, missing) = (tiles.drawn().len(), tiles.missing());
-        let (loading, is_full) = (tiles.loading(), tiles.is_full());
+        let (drawn, missing) = (tiles.drawn.len(), tiles.missing);
+        let (loading, is_full) = (tiles.loading(), tiles.is_full);
         let point_scale = self.manifest().point_scale;
-        let metres_per_pixel = probe.middle_pixel_m().map(|pixel_m| pixel_m / point_scale);
+        let metres_per_pixel = probe.middle_pixel_m.map(|pixel_m| pixel_m / point_scale);
         let is_playing = flights.is_playing();
         // A recording needs frames only while something moves.
         let is_busy = camera.navigator.is_moving() || is_playing || rest.is_busy;
@@ -126,7 +126,7 @@ impl Session {
             "cursor": probe.cursor().map(|point| point.record()),
             "metres_per_pixel": metres_per_pixel,
             "metres_per_point": metres_per_pixel.map(|pixel_m| pixel_m * pixels_per_point),
-            "mode": if camera.navigator.mode() == Mode::Fly { "fly" } else { "map" },
+            "mode": if camera.navigator.mode == Mode::Fly { "fly" } else { "map" },
             "tiles": { "drawn": drawn, "missing": missing, "loading": loading, "full": is_full },
             "triangles": counts.triangles,
             "segments": counts.segments,

@@ -37,7 +37,7 @@ fn session() -> Session {
         },
         size_px: SIZE_PX,
         pixels_per_point: 1.0,
-        inertia: Inertia::Off,
+        has_inertia: false,
     })
 }
 

@@ -6,20 +6,11 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 use corniche_tileset::Manifest;
 use corniche_viewer::{
-    RoadMethod, RoadOptions, Wireframe,
+    RoadMethod, RoadOptions,
     lod::{Fineness, Quality},
     tiles::TileDecoder,
 };
 use serde::{Deserialize, Serialize};
-
-/// Whether a layer is drawn, where the package has it: areas, or boundaries.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Visibility {
-    /// The classes that the style draws are shown.
-    Shown,
-    /// No class is shown.
-    Hidden,
-}
 
 /// Whether one method is shown, or two are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -46,17 +37,9 @@ impl Compare {
     }
 }
 
-/// Whether the choice of tiles follows the camera.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Refinement {
-    /// It follows the camera.
-    Live,
-    /// The tiles that are drawn now stay, wherever the camera goes, so that the choice can be looked at from elsewhere.
-    Frozen,
-}
-
 /// Everything that a person can change of a map, and of the panel beside it.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "boxes to tick, independent of each other")]
 pub struct MapSettings {
     /// How roads are drawn.
     pub roads: RoadOptions,
@@ -71,9 +54,9 @@ pub struct MapSettings {
     /// How strongly photos are seen, 0 to 1; `None`: as the style says.
     pub photo: Option<f32>,
     /// Whether areas are drawn as the style says, or not at all.
-    pub areas: Visibility,
+    pub areas: bool,
     /// Whether boundaries are drawn as the style says, or not at all.
-    pub boundaries: Visibility,
+    pub boundaries: bool,
     /// Files of lines that are not shown, by their numbers.
     pub hidden_overlays: BTreeSet<usize>,
     /// Factor on heights; 1 is true.
@@ -86,8 +69,8 @@ pub struct MapSettings {
     pub samples_per_side: u32,
     /// Whether the edges of triangles are drawn.
     pub is_wireframe: bool,
-    /// Whether the choice of tiles follows the camera.
-    pub refinement: Refinement,
+    /// Whether the tiles that are drawn now stay, wherever the camera goes, so that their choice can be looked at from elsewhere.
+    pub is_frozen: bool,
     /// Whether the panel is open.
     pub is_panel_open: bool,
     /// Whether the page of keys and mouse is open.
@@ -127,15 +110,15 @@ impl MapSettings {
             width_factors: [1.0; FunctionalRoadClass::COUNT],
             style: 0,
             photo: None,
-            areas: Visibility::Shown,
-            boundaries: Visibility::Shown,
+            areas: true,
+            boundaries: true,
             hidden_overlays: BTreeSet::new(),
             exaggeration: 1.0,
             screen_space_error_px: 2.0,
             cell_px: f64::INFINITY,
             samples_per_side: 2,
             is_wireframe: false,
-            refinement: Refinement::Live,
+            is_frozen: false,
             is_panel_open: true,
             is_help_open: false,
             place: String::new(),
@@ -146,10 +129,10 @@ impl MapSettings {
     #[must_use]
     pub fn applied_to(&self, style: &Style) -> Style {
         let mut applied = style.clone();
-        if self.areas == Visibility::Hidden {
+        if !self.areas {
             applied = applied.without_areas();
         }
-        if self.boundaries == Visibility::Hidden {
+        if !self.boundaries {
             applied = applied.without_boundaries();
         }
         applied.photo = self.photo.unwrap_or(applied.photo);
@@ -180,12 +163,6 @@ impl MapSettings {
             Compare::Off => TileDecoder::default().for_look(self.roads.method, &look),
             Compare::Split | Compare::Difference => TileDecoder::default().with_layers_of(&look),
         }
-    }
-
-    /// Whether the edges of triangles are drawn, in the viewer's words.
-    #[must_use]
-    pub fn wireframe(&self) -> Wireframe {
-        if self.is_wireframe { Wireframe::Shown } else { Wireframe::Hidden }
     }
 }
 

@@ -5,42 +5,13 @@ use corniche_viewer::{ClassSet, OutOfRange, Outline, RoadMethod, RoadOptions, ra
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::{
-    controls::Inertia,
-    settings::{Compare, MapSettings, Visibility},
-};
+use crate::settings::{Compare, MapSettings};
 
 /// Settings to change; those that are left out stay as they are.
 pub type SettingChanges = Map<String, Value>;
 
 /// Settings for which `null` is a value. For others it says nothing.
 const WITH_NULL: [&str; 2] = ["photo", "cell_px"];
-
-/// How roads are drawn.
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "RoadMethod")]
-enum RoadMethodName {
-    #[serde(rename = "geo")]
-    Geometry,
-    #[serde(rename = "sv")]
-    ShadowVolumes,
-    #[serde(rename = "none")]
-    None,
-}
-
-/// The edge around roads.
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Outline")]
-enum OutlineName {
-    #[serde(rename = "style")]
-    OfStyle,
-    #[serde(rename = "none")]
-    None,
-    #[serde(rename = "3")]
-    Kernel3,
-    #[serde(rename = "5")]
-    Kernel5,
-}
 
 /// Everything that a page can change.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,7 +22,6 @@ enum OutlineName {
 )]
 pub struct SettingsRecord {
     /// How roads are drawn, if one method is shown.
-    #[serde(with = "RoadMethodName")]
     pub roads: RoadMethod,
     /// Whether one method is shown, or both are compared.
     pub compare: Compare,
@@ -62,7 +32,6 @@ pub struct SettingsRecord {
     /// Factors on the style's widths, class 0 first.
     pub widths: [f32; FunctionalRoadClass::COUNT],
     /// The edge around roads.
-    #[serde(with = "OutlineName")]
     pub outline: Outline,
     /// The name of a style that comes with the program, or the address of an own one that the page keeps.
     pub style: String,
@@ -155,16 +124,9 @@ impl SettingsRecord {
         Ok(())
     }
 
-    /// Whether movements slow down gradually, in the words of the controls.
-    #[must_use]
-    pub fn inertia(&self) -> Inertia {
-        if self.inertia { Inertia::On } else { Inertia::Off }
-    }
-
     /// The same settings for a session.
     #[must_use]
     pub fn of_session(&self) -> MapSettings {
-        let visibility = |is_shown| if is_shown { Visibility::Shown } else { Visibility::Hidden };
         let all = FunctionalRoadClass::all().zip(self.classes);
         let shown = all.filter_map(|(class, is_shown)| is_shown.then_some(class));
         let roads = RoadOptions {
@@ -177,8 +139,8 @@ impl SettingsRecord {
             divider_share: self.divider,
             width_factors: self.widths,
             photo: self.photo,
-            areas: visibility(self.areas),
-            boundaries: visibility(self.boundaries),
+            areas: self.areas,
+            boundaries: self.boundaries,
             exaggeration: self.exaggeration,
             screen_space_error_px: self.error_px,
             cell_px: self.cell_px.unwrap_or(f64::INFINITY),

@@ -1,7 +1,6 @@
 //! Settings of the page change what they name and nothing else.
 
 use corniche_styles::Style;
-use corniche_viewer::Wireframe;
 
 use super::*;
 
@@ -19,9 +18,9 @@ fn what_is_not_named_stays_and_what_is_named_changes() {
         }
     );
     assert_eq!(changed.of_session().roads.method, RoadMethod::ShadowVolumes);
-    assert_eq!(changed.of_session().wireframe(), Wireframe::Hidden);
+    assert!(!changed.of_session().is_wireframe);
     let edges = usual.changed_by(r#"{"wireframe": true}"#).unwrap();
-    assert_eq!(edges.of_session().wireframe(), Wireframe::Shown);
+    assert!(edges.of_session().is_wireframe);
     let nothing = usual.changed_by(r#"{"roads": null, "divider": null}"#).unwrap();
     assert_eq!(nothing, usual);
     let text = serde_json::to_string(&changed).unwrap();

@@ -1,13 +1,11 @@
 //! What is seen, as far as a command that draws a picture of it needs to know.
 
-use std::collections::BTreeSet;
-
 use corniche_styles::Rgb;
-use corniche_viewer::{CameraRequest, ClassSet, RoadOptions, Wireframe};
+use corniche_viewer::{CameraRequest, ClassSet};
 
 use crate::{
     session::Session,
-    settings::{Compare, Visibility},
+    settings::{Compare, MapSettings},
 };
 
 /// What a window shows, as far as a picture of the same view needs it.
@@ -17,30 +15,12 @@ pub struct ShownView {
     pub camera: CameraRequest,
     /// Width and height of the map, pixels.
     pub size_px: [u32; 2],
-    /// How roads are drawn.
-    pub roads: RoadOptions,
+    /// How it is shown.
+    pub settings: MapSettings,
     /// The name of the style.
     pub style: String,
-    /// How strongly photos are seen, 0 to 1; `None`: as the style says.
-    pub photo: Option<f32>,
-    /// Whether areas are drawn as the style says, or not at all.
-    pub areas: Visibility,
-    /// Whether boundaries are drawn as the style says, or not at all.
-    pub boundaries: Visibility,
-    /// Files of lines that are hidden, by their numbers.
-    pub hidden_overlays: BTreeSet<usize>,
     /// Colours of the lines of all files, in the style that is shown.
     pub overlay_colors: Vec<Rgb>,
-    /// Factor on heights.
-    pub exaggeration: f64,
-    /// A tile is refined while its error looks larger than this, pixels.
-    pub screen_space_error_px: f64,
-    /// A tile is refined while one of its cells looks larger than this, pixels.
-    pub cell_px: f64,
-    /// Samples per pixel along each side.
-    pub samples_per_side: u32,
-    /// Whether edges of triangles are drawn.
-    pub wireframe: Wireframe,
 }
 
 /// The command line that draws a view as a picture.
@@ -55,18 +35,9 @@ impl ShownView {
         let shown = Self {
             camera: session.request(),
             size_px: session.camera.size_px(),
-            roads: settings.roads,
-            style: session.styles.names().get(settings.style)?.clone(),
-            photo: settings.photo,
-            areas: settings.areas,
-            boundaries: settings.boundaries,
-            hidden_overlays: settings.hidden_overlays.clone(),
+            settings: settings.clone(),
+            style: session.styles.names.get(settings.style)?.clone(),
             overlay_colors: session.overlay_colors(overlays),
-            exaggeration: settings.exaggeration,
-            screen_space_error_px: settings.screen_space_error_px,
-            cell_px: settings.cell_px,
-            samples_per_side: settings.samples_per_side,
-            wireframe: settings.wireframe(),
         };
         let left_out: Vec<&str> = [
             (settings.roads.classes != ClassSet::ALL, "hidden classes"),

@@ -22,7 +22,8 @@ const RELOAD_S: f64 = 1.0;
 pub struct StyleList {
     /// The styles, at least one.
     styles: Vec<NamedStyle>,
-    names: Vec<String>,
+    /// The names of all styles.
+    pub names: Vec<String>,
     reload: Option<Reload>,
     /// When the first style was asked about last.
     reloaded_s: f64,
@@ -40,12 +41,6 @@ impl StyleList {
     #[must_use]
     pub fn at(&self, place: usize) -> &Style {
         &self.styles[place.min(self.styles.len() - 1)].style
-    }
-
-    /// The names of all styles.
-    #[must_use]
-    pub fn names(&self) -> &[String] {
-        &self.names
     }
 
     /// When the first style must be asked about.

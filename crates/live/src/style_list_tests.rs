@@ -15,7 +15,7 @@ fn named(name: &str, outline_px: u32) -> NamedStyle {
 #[test]
 fn a_place_behind_the_end_is_the_last_style() {
     let list = StyleList::new(vec![named("a", 1), named("b", 2)], None);
-    assert_eq!(list.names(), ["a", "b"]);
+    assert_eq!(list.names, ["a", "b"]);
     let outlines = [0, 1, 9].map(|place| list.at(place).outline_px);
     assert_eq!(outlines, [1, 2, 2]);
 }

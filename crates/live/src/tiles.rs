@@ -53,10 +53,14 @@ pub struct Tiles {
     waiting: BTreeMap<TileId, TileGeometry>,
     /// The ground of the tiles that are on the graphics card.
     resident: BTreeMap<TileId, TileGeometry>,
-    drawn: Vec<Drawn>,
-    missing: usize,
+    /// Tiles that are drawn.
+    pub drawn: Vec<Drawn>,
+    /// Tiles that the view needs and that are not on the graphics card yet.
+    pub missing: usize,
     loading: BTreeSet<TileId>,
-    is_full: bool,
+    /// Whether the view needs more tiles than fit into the graphics memory allowed, so that it is drawn more coarsely than
+    /// was asked.
+    pub is_full: bool,
     /// Whether [`Tiles::take_first_time_full`] has returned true.
     was_full: bool,
 }
@@ -171,29 +175,10 @@ impl Tiles {
         self.is_full = false;
     }
 
-    /// Tiles that are drawn.
-    #[must_use]
-    pub fn drawn(&self) -> &[Drawn] {
-        &self.drawn
-    }
-
-    /// Tiles that the view needs and that are not on the graphics card yet.
-    #[must_use]
-    pub fn missing(&self) -> usize {
-        self.missing
-    }
-
     /// Tiles being loaded.
     #[must_use]
     pub fn loading(&self) -> usize {
         self.loading.len()
-    }
-
-    /// Whether the view needs more tiles than fit into the graphics memory allowed, so that it is drawn more coarsely than
-    /// was asked.
-    #[must_use]
-    pub fn is_full(&self) -> bool {
-        self.is_full
     }
 
     /// Whether [`Tiles::is_full`] holds for the first time since the window opened: true once.
@@ -204,7 +189,7 @@ impl Tiles {
     /// Bytes on the graphics card, and how many there may be.
     #[must_use]
     pub fn bytes_of_budget(&self) -> [u64; 2] {
-        [self.streamer.resident_bytes(), self.budget.gpu_bytes]
+        [self.streamer.resident_bytes, self.budget.gpu_bytes]
     }
 
     /// The ground that is drawn; outside the view, the other ground that is on the graphics card.

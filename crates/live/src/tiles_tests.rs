@@ -89,10 +89,10 @@ fn settle(tiles: &mut Tiles, screen_space_error_px: f64) -> Vec<String> {
         defects.extend(tiles.take_arrivals());
         let changes = tiles.choose(&camera(), None, quality);
         tiles.keep_ground(changes.upload);
-        if !changes.is_under_way && tiles.missing() == 0 && tiles.loading() == 0 {
+        if !changes.is_under_way && tiles.missing == 0 && tiles.loading() == 0 {
             return defects;
         }
-        assert!(begun.elapsed() < Duration::from_secs(30), "{} missing", tiles.missing());
+        assert!(begun.elapsed() < Duration::from_secs(30), "{} missing", tiles.missing);
         std::thread::sleep(Duration::from_millis(1));
     }
 }
@@ -101,8 +101,8 @@ fn settle(tiles: &mut Tiles, screen_space_error_px: f64) -> Vec<String> {
 fn heights_and_rays_find_the_ground_that_is_drawn() {
     let mut tiles = tiles();
     assert!(settle(&mut tiles, 1e6).is_empty());
-    assert_eq!(tiles.drawn().len(), 1);
-    let eye = camera().eye_in_world();
+    assert_eq!(tiles.drawn.len(), 1);
+    let eye = camera().eye_in_world;
     let ground = tiles.ground(2.0, [100.0, 110.0]);
     let near = |height: Option<f64>, expected: f64| {
         assert!((height.unwrap() - expected).abs() < 1e-3, "{height:?}");
@@ -114,7 +114,7 @@ fn heights_and_rays_find_the_ground_that_is_drawn() {
     near(Some(ground.base_height()), 210.0);
 
     settle(&mut tiles, 0.01);
-    assert_eq!(tiles.drawn().len(), 3, "one of the four is damaged");
+    assert_eq!(tiles.drawn.len(), 3, "one of the four is damaged");
     let ground = tiles.ground(1.0, [100.0, 110.0]);
     near(ground.height([1000.0, 4000.0]), 110.0);
     near(ground.hit(eye - DVec3::X * 500.0, DVec3::NEG_Z).map(|at| at.z), 110.0);
@@ -138,31 +138,31 @@ fn a_view_that_wants_more_than_may_be_held_is_full_and_another_is_not() {
     };
     let mut tiles = tiles_within(root_bytes + root_bytes / 2);
     settle(&mut tiles, 1e6);
-    assert!(!tiles.is_full(), "the root alone fits");
+    assert!(!tiles.is_full, "the root alone fits");
     let quality = Quality::by_error(0.01, 1.0);
     let begun = Instant::now();
-    while !tiles.is_full() {
+    while !tiles.is_full {
         tiles.take_arrivals();
         let changes = tiles.choose(&camera(), None, quality);
         tiles.keep_ground(changes.upload);
-        assert!(begun.elapsed() < Duration::from_secs(30), "{} missing", tiles.missing());
+        assert!(begun.elapsed() < Duration::from_secs(30), "{} missing", tiles.missing);
     }
-    assert!(tiles.missing() > 0 && tiles.loading() == 0);
+    assert!(tiles.missing > 0 && tiles.loading() == 0);
     settle(&mut tiles, 1e6);
-    assert!(!tiles.is_full(), "the root alone still fits");
+    assert!(!tiles.is_full, "the root alone still fits");
 }
 
 #[test]
 fn after_a_loss_everything_is_asked_for_again() {
     let mut tiles = tiles();
     settle(&mut tiles, 0.01);
-    let before = tiles.drawn().to_vec();
+    let before = tiles.drawn.clone();
     let [bytes, _] = tiles.bytes_of_budget();
     tiles.begin_again();
-    assert!(tiles.drawn().is_empty());
+    assert!(tiles.drawn.is_empty());
     assert_eq!(tiles.bytes_of_budget()[0], 0);
     settle(&mut tiles, 0.01);
-    assert_eq!((tiles.drawn(), tiles.bytes_of_budget()[0]), (&before[..], bytes));
+    assert_eq!((&tiles.drawn, tiles.bytes_of_budget()[0]), (&before, bytes));
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn what_arrives_from_before_a_loss_does_not_count_twice() {
     tiles.choose(&camera(), None, quality);
     tiles.begin_again();
     settle(&mut tiles, 0.01);
-    assert_eq!((tiles.drawn().len(), tiles.loading()), (3, 0));
+    assert_eq!((tiles.drawn.len(), tiles.loading()), (3, 0));
     assert!(tiles.waiting.is_empty(), "{:?}", tiles.waiting.keys());
 }
 
@@ -193,10 +193,10 @@ fn shown(catalog: Arc<dyn TileCatalog>, loader: Box<dyn TileLoader>) -> (Vec<Dra
         assert!(defects.is_empty(), "{defects:?}");
         let changes = tiles.choose(&camera, None, quality);
         tiles.keep_ground(changes.upload);
-        if !changes.is_under_way && tiles.missing() == 0 && tiles.loading() == 0 {
-            return (tiles.drawn().to_vec(), tiles.bytes_of_budget()[0]);
+        if !changes.is_under_way && tiles.missing == 0 && tiles.loading() == 0 {
+            return (tiles.drawn.clone(), tiles.bytes_of_budget()[0]);
         }
-        assert!(begun.elapsed() < Duration::from_secs(30), "{} missing", tiles.missing());
+        assert!(begun.elapsed() < Duration::from_secs(30), "{} missing", tiles.missing);
     }
 }
 

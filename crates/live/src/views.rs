@@ -78,7 +78,7 @@ pub(crate) fn view_on(
 /// A view that shows in the left part of a window of this width what `camera` shows in a picture of its own.
 fn in_left_part(camera: &Camera, orientation: Orientation, window_width_px: u32) -> View {
     let mut view = View::of(camera, orientation);
-    let part_width_px = camera.size_px()[0];
+    let part_width_px = camera.size_px[0];
     let hidden_px = f64::from(window_width_px.saturating_sub(part_width_px));
     // The middle of the window lies this far to the right of the middle of the part. A pixel has the same size in both,
     // for the size follows from the height of the picture.

@@ -18,11 +18,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Dash {
     /// Where the first dash, the first gap and the second dash end, as shares of the pattern.
-    ends: [f32; 3],
+    pub ends: [f32; 3],
     /// Least length of the pattern on the picture; 0 for a solid line.
-    least_px: f32,
+    pub least_px: f32,
     /// How wide the line is along the pattern; `None`: everywhere as wide.
-    widths: Option<[f32; Dash::WIDTHS]>,
+    pub widths: Option<[f32; Dash::WIDTHS]>,
 }
 
 impl Dash {
@@ -129,12 +129,6 @@ impl Dash {
         })
     }
 
-    /// How wide the line is along the pattern, as shares of its width; `None`: everywhere as wide.
-    #[must_use]
-    pub const fn widths(&self) -> Option<[f32; Self::WIDTHS]> {
-        self.widths
-    }
-
     /// How wide a line is so far along it on the picture, as a share of its width, where its pattern is as short as it gets.
     #[must_use]
     pub fn width_at(&self, along_px: f32) -> f32 {
@@ -147,18 +141,6 @@ impl Dash {
         }
         let [dash, gap, second] = self.ends;
         f32::from(u8::from(at < dash || (gap..second).contains(&at)))
-    }
-
-    /// Where the first dash, the first gap and the second dash end, as shares of the pattern.
-    #[must_use]
-    pub const fn ends(&self) -> [f32; 3] {
-        self.ends
-    }
-
-    /// Least length of the pattern on the picture; 0 for a solid line.
-    #[must_use]
-    pub const fn least_px(&self) -> f32 {
-        self.least_px
     }
 }
 

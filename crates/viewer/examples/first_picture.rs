@@ -12,10 +12,10 @@ use std::{collections::BTreeMap, env, error::Error, fs, path::Path, time::Instan
 
 use corniche_styles::Style;
 use corniche_viewer::{
-    CameraRequest, FrameView, RoadMethod, RoadOptions, SightedGround, Wireframe, for_tests,
+    CameraRequest, FrameView, RoadMethod, RoadOptions, SightedGround, for_tests,
     gpu::{DrawTile, Gpu, Renderer, SlopeChain, Targets, TileBuffers, tile_bytes},
     lod::{Fineness, Quality},
-    tiles::{MapPackage as _, PackageSource, TileStore},
+    tiles::{LoadTileError, MapPackage as _, PackageSource, TileDecoder, TileStore},
 };
 
 const SIZE_PX: [u32; 2] = [1600, 1200];
@@ -58,7 +58,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut stages = Stages::new();
     let style = Style::road_atlas();
     let roads = RoadOptions::of(RoadMethod::ShadowVolumes);
-    let package = PackageSource::open(Path::new(&file))?.for_look(roads.method, &style);
+    let package = PackageSource::open(Path::new(&file))?;
+    let package = package.with_decoder(TileDecoder::default().for_look(roads.method, &style));
     let manifest = package.manifest();
     stages.end("package opened");
 
@@ -70,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let camera =
         CameraRequest::Overview.camera(manifest, sighted, manifest.point_scale, SIZE_PX)?;
     let quality = Quality::of_package(manifest, FINENESS, &style, roads, 1.0);
-    let drawn = for_tests::settle(&mut store, &camera, quality, &|| false)?;
+    let drawn = for_tests::settle(&mut store, &camera, quality, || Ok::<_, LoadTileError>(()))?;
     stages.end("tiles loaded");
 
     let gpu = Gpu::new()?;
@@ -105,7 +106,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         wall_m: FrameView::wall_beside_m(heights_m),
         cell_px: FINENESS.cell_px,
         latitude_deg: manifest.wgs84_bounds.center()[1],
-        wireframe: Wireframe::Hidden,
+        is_wireframe: false,
     };
     let tiles: Vec<DrawTile<'_>> = uploaded
         .iter()
@@ -114,7 +115,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     renderer.draw(&gpu, &view, &tiles, &targets);
     gpu.finish()?;
     stages.end("drawn");
-    targets.picture().read_image(&gpu)?;
+    targets.picture.read_image(&gpu)?;
     stages.end("read back");
     // What was compiled for the first picture is there for the second.
     renderer.draw(&gpu, &view, &tiles, &targets);
@@ -130,7 +131,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let slopes = of_drawn(&SlopeChain::bytes_of);
     let volumes = of_drawn(&|tile| tile.volumes.all().len() as u64);
     println!("\ntiles loaded {}, drawn {}", store.len(), drawn.len());
-    println!("triangles {}, road segments {volumes}", count(&TileBuffers::triangles));
+    println!("triangles {}, road segments {volumes}", count(&|tile| tile.triangles));
     println!("bytes on the card: all {all}, slopes {slopes}, roads {}", volumes * 60);
     Ok(())
 }

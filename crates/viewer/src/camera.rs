@@ -94,14 +94,18 @@ pub enum Projection {
 /// A camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    eye_in_world: DVec3,
-    projection: Projection,
+    /// The eye, world metres.
+    pub eye_in_world: DVec3,
+    /// How the rays run.
+    pub projection: Projection,
     /// Columns: right, up, backward in world space. Orthonormal.
-    world_from_view: DMat3,
-    fov_y_rad: f64,
-    size_px: [u32; 2],
-    near_m: f64,
-    focus_m: f64,
+    pub world_from_view: DMat3,
+    /// Width and height of the picture.
+    pub size_px: [u32; 2],
+    /// Depth of the near plane.
+    pub near_m: f64,
+    /// Distance to the point that the camera looks at; from above, that at which a perspective camera has pixels of this size.
+    pub focus_m: f64,
 }
 
 /// The view volume as planes: `dot(normal, point) + offset >= 0` inside. No far plane.
@@ -135,7 +139,6 @@ impl Camera {
             eye_in_world,
             projection: Projection::Perspective,
             world_from_view: world_from_view(orientation),
-            fov_y_rad: FOV_Y_RAD,
             size_px,
             near_m: distance_m * NEAR_SHARE,
             focus_m: distance_m,
@@ -147,7 +150,7 @@ impl Camera {
     pub fn framing(subject: WorldBox, orientation: Orientation, size_px: [u32; 2]) -> Self {
         let world_from_view = world_from_view(orientation);
         let view_from_world = world_from_view.transpose();
-        let tan = half_extent_at_unit_depth(FOV_Y_RAD, size_px);
+        let tan = half_extent_at_unit_depth(size_px);
         let corners: Vec<DVec3> =
             subject.corners().map(|corner| view_from_world * (corner - subject.center())).collect();
         // With the eye at (ox, oy, d) in view axes around the centre, a corner (x, y, z) is inside iff
@@ -195,7 +198,7 @@ impl Camera {
         size_px: [u32; 2],
     ) -> Self {
         let orientation = Orientation { heading_deg, pitch_deg: 0.0 };
-        let distance_m = pixel_m / pixel_at_unit_depth_m(FOV_Y_RAD, size_px);
+        let distance_m = pixel_m / pixel_at_unit_depth_m(size_px);
         // Ground at the very end of the range would have the depth of nothing.
         let [lowest, highest] = heights_in_world;
         let margin_m = 0.01 * (highest - lowest) + 1.0;
@@ -234,12 +237,6 @@ impl Camera {
         )
     }
 
-    /// How the rays run.
-    #[must_use]
-    pub fn projection(&self) -> Projection {
-        self.projection
-    }
-
     /// The distance from the eye that decides how large things look at a place, and so what is shown there. In a view from above it
     /// is the same everywhere.
     #[must_use]
@@ -266,18 +263,6 @@ impl Camera {
             }
     }
 
-    /// The eye, world metres.
-    #[must_use]
-    pub fn eye_in_world(&self) -> DVec3 {
-        self.eye_in_world
-    }
-
-    /// Distance to the point that the camera looks at; from above, that at which a perspective camera has pixels of this size.
-    #[must_use]
-    pub fn focus_m(&self) -> f64 {
-        self.focus_m
-    }
-
     /// The point that the camera looks at; from above, one in the middle of the heights.
     #[must_use]
     pub fn target_in_world(&self) -> DVec3 {
@@ -288,39 +273,21 @@ impl Camera {
         self.eye_in_world - self.world_from_view.z_axis * depth_m
     }
 
-    /// Depth of the near plane.
-    #[must_use]
-    pub fn near_m(&self) -> f64 {
-        self.near_m
-    }
-
-    /// Width and height of the picture.
-    #[must_use]
-    pub fn size_px(&self) -> [u32; 2] {
-        self.size_px
-    }
-
     /// The same view with `factor` times as many pixels on each side.
     #[must_use]
     pub fn supersampled(&self, factor: u32) -> Self {
         Self { size_px: self.size_px.map(|side| side * factor), ..*self }
     }
 
-    /// The axes of the view as columns: right, up, backward.
-    #[must_use]
-    pub fn world_from_view(&self) -> DMat3 {
-        self.world_from_view
-    }
-
     /// Half width and half height of what is seen at depth 1.
     pub(crate) fn half_extent_at_unit_depth(&self) -> DVec2 {
-        half_extent_at_unit_depth(self.fov_y_rad, self.size_px)
+        half_extent_at_unit_depth(self.size_px)
     }
 
     /// Side of a pixel at depth 1, in metres.
     #[must_use]
     pub fn pixel_at_unit_depth_m(&self) -> f64 {
-        pixel_at_unit_depth_m(self.fov_y_rad, self.size_px)
+        pixel_at_unit_depth_m(self.size_px)
     }
 
     /// Half width and half height of what is seen at depth 1, or from above at any depth.
@@ -459,12 +426,12 @@ impl Frustum {
     }
 }
 
-fn pixel_at_unit_depth_m(fov_y_rad: f64, [_, height]: [u32; 2]) -> f64 {
-    2.0 * libm::tan(fov_y_rad / 2.0) / f64::from(height)
+fn pixel_at_unit_depth_m([_, height]: [u32; 2]) -> f64 {
+    2.0 * libm::tan(FOV_Y_RAD / 2.0) / f64::from(height)
 }
 
-fn half_extent_at_unit_depth(fov_y_rad: f64, [width, height]: [u32; 2]) -> DVec2 {
-    let tan = libm::tan(fov_y_rad / 2.0);
+fn half_extent_at_unit_depth([width, height]: [u32; 2]) -> DVec2 {
+    let tan = libm::tan(FOV_Y_RAD / 2.0);
     DVec2::new(tan * f64::from(width) / f64::from(height), tan)
 }
 

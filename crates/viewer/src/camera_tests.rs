@@ -41,7 +41,7 @@ fn heading_east_has_east_up_and_south_right() {
 
 #[test]
 fn a_tilted_camera_stands_behind_and_above_its_target() {
-    let eye = camera(0.0, 60.0).eye_in_world();
+    let eye = camera(0.0, 60.0).eye_in_world;
     assert!((eye.y - (5_000_000.0 - 10_000.0 * 60_f64.to_radians().sin())).abs() < 1e-6);
     assert!((eye.z - (800.0 + 5_000.0)).abs() < 1e-6);
 }
@@ -55,7 +55,7 @@ fn a_place_seen_from_above_is_where_the_scale_says() {
         let at = DVec3::new(500_250.0, 5_000_100.0, height_m);
         let (pixel, _) = camera.project(at).unwrap();
         assert!(pixel.distance(DVec2::new(320.0 + 100.0, 240.0 - 40.0)) < 1e-9, "{pixel}");
-        assert!((camera.seeing_distance_m(at) - camera.focus_m()).abs() < 1e-12);
+        assert!((camera.seeing_distance_m(at) - camera.focus_m).abs() < 1e-12);
     }
     assert!((camera.pixel_at_depth_m(1.0) - 2.5).abs() < 1e-12);
     let turned = Camera::from_above(target.truncate(), 2.5, 90.0, [0.0, 3000.0], SIZE);
@@ -69,13 +69,13 @@ fn depths_from_above_are_between_nothing_and_one_and_come_back() {
     let camera = Camera::from_above(target.truncate(), 2.5, 0.0, [-100.0, 3000.0], SIZE);
     for height_m in [-100.0, 800.0, 3000.0] {
         let at = DVec3::new(10.0, 20.0, height_m);
-        let clip = camera.clip_from_relative() * (at - camera.eye_in_world()).extend(1.0);
+        let clip = camera.clip_from_relative() * (at - camera.eye_in_world).extend(1.0);
         assert!(
             (clip.w - 1.0).abs() < 1e-12 && clip.z > 0.0 && clip.z < 1.0,
             "{height_m} m: {clip}"
         );
         let depth_m = camera.depth_m(clip.z);
-        assert!((camera.eye_in_world().z - depth_m - height_m).abs() < 1e-9);
+        assert!((camera.eye_in_world.z - depth_m - height_m).abs() < 1e-9);
         let (pixel, _) = camera.project(at).unwrap();
         let back = camera.ray_start_in_world(pixel) + camera.ray_in_world(pixel) * depth_m;
         assert!(back.distance(at) < 1e-9, "{back}");
@@ -109,7 +109,7 @@ fn depth_runs_from_one_at_the_near_plane_to_zero() {
         let clip = camera.clip_from_relative() * DVec4::new(0.0, 0.0, -below_eye_m, 1.0);
         clip.z / clip.w
     };
-    assert!((depth(camera.near_m()) - 1.0).abs() < 1e-12);
+    assert!((depth(camera.near_m) - 1.0).abs() < 1e-12);
     assert!(depth(1e9) > 0.0 && depth(1e9) < 1e-6);
 }
 
@@ -146,7 +146,7 @@ proptest! {
         x_px in 0.0..640.0_f64, y_px in 0.0..480.0_f64,
     ) {
         let camera = camera(heading_deg, pitch_deg);
-        let point = camera.eye_in_world() + camera.ray_in_world(DVec2::new(x_px, y_px)) * depth_m;
+        let point = camera.eye_in_world + camera.ray_in_world(DVec2::new(x_px, y_px)) * depth_m;
         let (at, back_m) = camera.project(point).unwrap();
         prop_assert!((at - DVec2::new(x_px, y_px)).length() < 1e-4);
         prop_assert!((back_m - depth_m).abs() < 1e-4);
@@ -159,7 +159,7 @@ proptest! {
         x_px in 0.0..640.0_f64, y_px in 0.0..480.0_f64, side_m in 0.0..5_000.0_f64,
     ) {
         let camera = camera(heading_deg, pitch_deg);
-        let point = camera.eye_in_world() + camera.ray_in_world(DVec2::new(x_px, y_px)) * depth_m;
+        let point = camera.eye_in_world + camera.ray_in_world(DVec2::new(x_px, y_px)) * depth_m;
         let subject = WorldBox { min: point - DVec3::splat(side_m), max: point + DVec3::splat(side_m / 2.0) };
         prop_assert!(camera.frustum().may_see(&subject));
     }
@@ -168,7 +168,7 @@ proptest! {
     #[test]
     fn boxes_behind_the_eye_are_culled(pitch_deg in 0.0..85.0_f64, behind_m in 10.0..1e5_f64) {
         let camera = camera(0.0, pitch_deg);
-        let point = camera.eye_in_world() + camera.world_from_view().z_axis * behind_m;
+        let point = camera.eye_in_world + camera.world_from_view.z_axis * behind_m;
         let subject = WorldBox { min: point - DVec3::ONE, max: point + DVec3::ONE };
         prop_assert!(!camera.frustum().may_see(&subject));
     }

@@ -27,7 +27,7 @@ fn the_near_plane_does_not_reach_the_ground() {
             let focus_m = focus_m(above_m, pitch_deg);
             let camera = Camera::look_at(DVec3::ZERO, focus_m, orientation, [100, 100]);
             // The corners of the near plane are less than twice as far away as the plane.
-            assert!(2.0 * camera.near_m() < above_m / 10.0, "{pitch_deg} {above_m}");
+            assert!(2.0 * camera.near_m < above_m / 10.0, "{pitch_deg} {above_m}");
         }
     }
 }

@@ -29,16 +29,8 @@ pub struct FrameView<'a> {
     pub cell_px: f64,
     /// Latitude of the middle of the package; colours of the ground may depend on it.
     pub latitude_deg: f64,
-    /// Whether the edges of the ground's triangles are drawn.
-    pub wireframe: Wireframe,
-}
-
-/// Whether the edges of the ground's triangles are drawn, beneath the roads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say what they are")]
-pub enum Wireframe {
-    Hidden,
-    Shown,
+    /// Whether the edges of the ground's triangles are drawn, beneath the roads.
+    pub is_wireframe: bool,
 }
 
 impl FrameView<'_> {

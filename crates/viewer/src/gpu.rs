@@ -64,8 +64,9 @@ mod formats;
 mod ground_buffers;
 pub(crate) mod inspection;
 pub(crate) mod labels;
+#[cfg(test)]
+pub(crate) mod labels_tests;
 mod passes;
-mod photo_texture;
 mod picture;
 mod pipeline;
 mod read_back;

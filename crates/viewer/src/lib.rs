@@ -50,9 +50,9 @@ pub mod for_tests {
     pub use crate::{
         gpu::{
             inspection::Owner,
-            labels::{class_of, is_service, is_tunnel, road_label, service_label, tunnel_label},
+            labels::{class_of, is_service, is_tunnel},
         },
-        scene::{SettleError, capped_ways, draw_list, may_be_clamped, settle},
+        scene::{capped_ways, draw_list, may_be_clamped, settle},
         tiles::{
             plan_scale::PlanScale,
             roads::{BadRoads, GroundLine, PlanLine},
@@ -67,7 +67,7 @@ pub use annotations::{
 };
 pub use boundary_lines::BoundaryLines;
 pub use class_scale::LevelScales;
-pub use frame_view::{FrameView, Wireframe};
+pub use frame_view::FrameView;
 pub use lon_lat::{LonLatError, parse_lon_lat};
 pub use options::{
     CapTest, Caps, ClassSet, Mapping, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,

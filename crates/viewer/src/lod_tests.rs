@@ -227,7 +227,7 @@ proptest! {
         let error_px = |id: TileId| {
             let Node::Loaded(Some(ground)) = tree.node(id) else { unreachable!() };
             let distance_m =
-                WorldBox::new(tree.plan_bounds(id), ground.height_range_m).distance_m(camera.eye_in_world());
+                WorldBox::new(tree.plan_bounds(id), ground.height_range_m).distance_m(camera.eye_in_world);
             screen_space_error_px(ground.geometric_error_m, distance_m, &camera)
         };
         for id in ids(&selection) {
@@ -247,7 +247,7 @@ proptest! {
             let Node::Loaded(Some(ground)) = tree.node(id) else { unreachable!() };
             let plan = tree.plan_bounds(id);
             let distance_m =
-                WorldBox::new(plan, ground.height_range_m).distance_m(camera.eye_in_world());
+                WorldBox::new(plan, ground.height_range_m).distance_m(camera.eye_in_world);
             screen_space_error_px(ground.geometric_error_m, distance_m, &camera) <= 2.0
                 && cell_side_px(plan, distance_m, &camera) <= cell_px
         };

@@ -6,13 +6,16 @@ use serde::{Deserialize, Serialize};
 use corniche_styles::{RoadStyle, Style, WidthScaling};
 
 /// How roads are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RoadMethod {
     /// Roads are geometry lying on the TIN of their level (GEO).
+    #[serde(rename = "geo")]
     Geometry,
     /// Roads are volumes that are intersected with the ground (SV).
+    #[serde(rename = "sv")]
     ShadowVolumes,
     /// No roads are drawn.
+    #[serde(rename = "none")]
     None,
 }
 
@@ -68,15 +71,19 @@ pub enum WidthGrowth {
 }
 
 /// The edge drawn around roads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outline {
     /// Outlines are as wide as the style says.
+    #[serde(rename = "style")]
     OfStyle,
     /// No edge.
+    #[serde(rename = "none")]
     None,
     /// One pixel: a kernel of 3 × 3.
+    #[serde(rename = "3")]
     Kernel3,
     /// Two pixels: a kernel of 5 × 5.
+    #[serde(rename = "5")]
     Kernel5,
 }
 

@@ -70,7 +70,7 @@ impl Ray {
         let plan = |depth: f64| (self.eye + self.way * depth).truncate().to_array();
         let mut nearest = self.first_deck(tile, vertical_scale);
         for (share, triangles) in
-            tile.ground.triangle_grid().along(plan(self.enters), plan(self.leaves))
+            tile.ground.triangle_grid.along(plan(self.enters), plan(self.leaves))
         {
             if self.enters + share * (self.leaves - self.enters) > nearest {
                 break;

@@ -95,9 +95,7 @@ fn a_bridge_is_met_before_the_ground_beneath() {
     let ground = tile(0.0, 0.0, |_, _| 500.0);
     let deck = DeckLine {
         way_id: 1,
-        class: corniche_roads::FunctionalRoadClass::new(3).unwrap(),
-        own_width: corniche_roads::OwnWidth::Unknown,
-        look: crate::tiles::RoadLook::Plain,
+        kind: crate::tiles::RoadKind::plain(corniche_roads::FunctionalRoadClass::new(3).unwrap()),
         points_m: vec![[-40.0, 0.0, 520.0], [40.0, 0.0, 520.0]],
         on_ground: [false; 2],
     };

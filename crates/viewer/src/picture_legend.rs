@@ -41,7 +41,7 @@ pub(crate) fn legend(
     seen: &Seen,
     has_tint: bool,
 ) -> Legend {
-    let axes = view.camera.world_from_view();
+    let axes = view.camera.world_from_view;
     let road = |class: FunctionalRoadClass| {
         let label = request.road_labels[usize::from(class.number())].clone();
         LegendRow { label, sample: LegendSample::Road(road(view, class)) }
@@ -53,7 +53,7 @@ pub(crate) fn legend(
     let rows = seen.roads.iter().map(road).chain(tunnel);
     let rows = rows.chain(boundaries(view, seen)).chain(areas(view, seen)).collect();
     Legend {
-        pixel_m: view.camera.pixel_at_unit_depth_m() * view.camera.focus_m() / view.point_scale,
+        pixel_m: view.camera.pixel_at_unit_depth_m() * view.camera.focus_m / view.point_scale,
         // The right axis of the view is level, and points as far from the east as north is from the top of the picture.
         north_deg: axes.x_axis.y.atan2(axes.x_axis.x).to_degrees(),
         scale: request.scale,
@@ -65,7 +65,7 @@ pub(crate) fn legend(
 
 /// How wide a road of a class is in the middle of the picture, pixels, before its least width is applied.
 fn seen_px(view: &FrameView<'_>, road: &RoadStyle) -> f32 {
-    let (distance_m, scaling) = (view.camera.focus_m(), view.roads.width_scaling(view.style, road));
+    let (distance_m, scaling) = (view.camera.focus_m, view.roads.width_scaling(view.style, road));
     let near_m = f64::from(road.width_m) * view.point_scale;
     let grown_m = near_m * scaling.factor(distance_m / view.point_scale);
     let limit = class_scale::half_width_limit(road, view.roads.width_growth, view.camera);
@@ -94,7 +94,7 @@ fn road(view: &FrameView<'_>, class: FunctionalRoadClass) -> LegendRoad {
 
 /// How much of the edge of such roads is drawn in the middle of the picture: it goes within a zoom step.
 fn edge_share(view: &FrameView<'_>, road: &RoadStyle) -> f32 {
-    let pixel_m = view.camera.pixel_at_unit_depth_m() * view.camera.focus_m() / view.point_scale;
+    let pixel_m = view.camera.pixel_at_unit_depth_m() * view.camera.focus_m / view.point_scale;
     road.edge_max_pixel_m.map_or(1.0, |max_pixel_m| {
         (1.0 - libm::log2(pixel_m / f64::from(max_pixel_m))).clamp(0.0, 1.0) as f32
     })

@@ -7,7 +7,6 @@ use glam::DVec2;
 use super::*;
 use crate::{
     camera::Camera,
-    frame_view::Wireframe,
     options::{ClassSet, RoadMethod, RoadOptions},
 };
 
@@ -26,7 +25,7 @@ fn view<'a>(camera: &'a Camera, style: &'a Style) -> FrameView<'a> {
         wall_m: 0.0,
         cell_px: 2.0,
         latitude_deg: 47.0,
-        wireframe: Wireframe::Hidden,
+        is_wireframe: false,
     }
 }
 

@@ -11,13 +11,13 @@ use crate::{
     annotations::{Taken, TitleFlaws, draw_attribution, draw_legend, draw_title},
     camera::{Camera, Projection},
     eye_height::{clearance_m, rounded_up_m},
-    frame_view::{FrameView, Wireframe},
+    frame_view::FrameView,
     gpu::{DrawTile, Gpu, GpuError, ReadBackError, Renderer, SlopeChain, Targets, TileBuffers},
     lod::{Drawn, Fineness, Quality},
     options::RoadOptions,
     picture_legend::{LegendRequest, legend},
     range::{self, OutOfRange},
-    scene::{self, SettleError},
+    scene,
     tiles::{BlockingPackage, ClassVolumes, LoadTileError, MapExtent, TileGeometry, TileStore},
     viewpoint::{CameraRequest, OffGround, SightedGround},
 };
@@ -48,7 +48,7 @@ pub struct RenderRequest {
     /// What is written over the picture, if anything is.
     pub title: Option<String>,
     /// Whether the edges of the ground's triangles are drawn.
-    pub wireframe: Wireframe,
+    pub is_wireframe: bool,
 }
 
 impl RenderRequest {
@@ -133,15 +133,6 @@ pub enum RenderError {
     Stopped,
 }
 
-impl From<SettleError> for RenderError {
-    fn from(error: SettleError) -> Self {
-        match error {
-            SettleError::Load(load) => Self::Load(load),
-            SettleError::Stopped => Self::Stopped,
-        }
-    }
-}
-
 /// Renders a picture of `package`, without a window.
 ///
 /// `package` must be opened for the road method of the request: it then reads the sections that this method needs. The
@@ -169,7 +160,8 @@ pub fn render(
         .ok_or_else(|| RenderError::NoGround { name: request.name.clone() })?
         .height_range_m;
     let camera = camera(request, package, &mut store, height_range_m)?;
-    let drawn = scene::settle(&mut store, &camera, quality, is_stopped)?;
+    let check = || if is_stopped() { Err(RenderError::Stopped) } else { Ok(()) };
+    let drawn = scene::settle(&mut store, &camera, quality, check)?;
 
     let gpu = Gpu::new()?;
     let targets = Targets::new(&gpu, request.size_px, request.supersampling)?;
@@ -183,7 +175,7 @@ pub fn render(
         wall_m: FrameView::wall_beside_m(height_range_m),
         cell_px: request.cell_px,
         latitude_deg: package.manifest().wgs84_bounds.center()[1],
-        wireframe: request.wireframe,
+        is_wireframe: request.is_wireframe,
     };
     let mut slopes = BTreeMap::new();
     let uploaded: Vec<(TileBuffers, f64)> = scene::draw_list(&store, &drawn)
@@ -199,10 +191,8 @@ pub fn render(
     let renderer = Renderer::new(&gpu);
     renderer.draw(&gpu, &view, &tiles, &targets);
 
-    let mut picture = targets.picture().read_image(&gpu)?;
-    if is_stopped() {
-        return Err(RenderError::Stopped);
-    }
+    let mut picture = targets.picture.read_image(&gpu)?;
+    check()?;
     let title = request.title.as_deref().map(|title| draw_title(&mut picture, title));
     let title = title.unwrap_or_default();
     let credits_px = draw_attribution(&mut picture, &package.manifest().attribution);
@@ -216,11 +206,11 @@ pub fn render(
         is_legend_cut = draw_legend(&mut picture, &legend, taken);
     }
 
-    let eye = camera.eye_in_world();
+    let eye = camera.eye_in_world;
     let report = RenderReport {
-        adapter: gpu.adapter_name().to_owned(),
+        adapter: gpu.adapter_name.clone(),
         tiles: drawn.len() as u64,
-        triangles: uploaded.iter().map(|(buffers, _)| buffers.triangles()).sum(),
+        triangles: uploaded.iter().map(|(buffers, _)| buffers.triangles).sum(),
         road_segments: tiles.iter().map(|tile| tile.road_segments(&view)).sum(),
         area_polygons: sum_of_areas(&tiles, &view, |volumes| u64::from(volumes.polygons)),
         area_points: sum_of_areas(&tiles, &view, |volumes| volumes.walls.len() as u64),
@@ -309,11 +299,11 @@ fn camera(
 
 /// The map from columns and rows of the picture, counted from its upper left corner, to working metres, if each pixel has a place whatever the height there.
 fn working_from_pixel(camera: &Camera) -> Option<[f64; 6]> {
-    if camera.projection() == Projection::Perspective {
+    if camera.projection == Projection::Perspective {
         return None;
     }
-    let [width, height] = camera.size_px().map(f64::from);
-    let (half, axes) = (camera.half_extent(), camera.world_from_view());
+    let [width, height] = camera.size_px.map(f64::from);
+    let (half, axes) = (camera.half_extent(), camera.world_from_view);
     let of_column = axes.x_axis * (2.0 * half.x / width);
     let of_row = axes.y_axis * (-2.0 * half.y / height);
     let corner = camera.ray_start_in_world(DVec2::ZERO);
@@ -338,7 +328,7 @@ fn check_above_ground(
     vertical_scale: f64,
     point_scale: f64,
 ) -> Result<(), RenderError> {
-    let eye = camera.eye_in_world();
+    let eye = camera.eye_in_world;
     let Some(ground_m) = store.ground_height_m([eye.x, eye.y])? else { return Ok(()) };
     let lacking_m = ground_m * vertical_scale + clearance_m(point_scale) - eye.z;
     if lacking_m > 0.0 {

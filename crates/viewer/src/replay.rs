@@ -13,9 +13,8 @@ mod record;
 mod streamed_tiles;
 mod timetable;
 
-use std::{collections::BTreeMap, time::Instant};
+use std::time::Instant;
 
-use corniche_geom::TileId;
 use glam::DVec3;
 use image::RgbaImage;
 
@@ -32,8 +31,8 @@ use crate::{
     annotations::draw_attribution,
     camera::Camera,
     flight::{Flight, Pose},
-    frame_view::{FrameView, Wireframe},
-    gpu::{DrawTile, Gpu, PassTimer, PassTimes, Renderer, Targets, TileBuffers},
+    frame_view::FrameView,
+    gpu::{Gpu, PassTimer, Renderer, ResidentTiles, Targets},
     lod::{Fineness, Quality},
     tiles::{BlockingPackage, TileStore},
 };
@@ -70,30 +69,13 @@ enum TileSupply<'a> {
 }
 
 impl TileSupply<'_> {
-    fn buffers(&self) -> &BTreeMap<TileId, TileBuffers> {
+    /// What is on the graphics card, and the bytes of the slopes of other tiles there.
+    fn resident(&self) -> (&ResidentTiles, u64) {
         match self {
-            Self::Finest(finest) => finest.buffers(),
-            Self::Streamed(streamed) => streamed.buffers(),
+            Self::Finest(finest) => (&finest.tiles, finest.above_bytes),
+            Self::Streamed(streamed) => (&streamed.tiles, 0),
         }
     }
-
-    /// Bytes on the graphics card.
-    fn gpu_bytes(&self) -> u64 {
-        let above_bytes = match self {
-            Self::Finest(finest) => finest.above_bytes(),
-            Self::Streamed(_) => 0,
-        };
-        above_bytes + self.buffers().values().map(TileBuffers::gpu_bytes).sum::<u64>()
-    }
-}
-
-/// What was drawn in one frame, and how long it took.
-struct DrawnFrame {
-    tiles: usize,
-    triangles: u64,
-    road_segments: u64,
-    draw_ms: f64,
-    passes: Option<PassTimes>,
 }
 
 impl<'a> Replay<'a> {
@@ -140,7 +122,7 @@ impl<'a> Replay<'a> {
         })
     }
 
-    /// Draws the next frame; `None` after the last.
+    /// Draws the next frame, and waits until it is drawn; `None` after the last.
     ///
     /// # Errors
     /// When a tile cannot be read, the device is lost, or it was stopped.
@@ -158,63 +140,44 @@ impl<'a> Replay<'a> {
         pose.eye_m[2] += stand.lift_m;
         let camera = self.camera(pose, stand.focus_m);
         let prepared = self.prepare_tiles(frame, &camera)?;
-        let drawn = self.draw(&camera, &prepared)?;
+        let started = Instant::now();
+        let (resident, above_bytes) = self.tiles.resident();
+        let tiles = resident.draw_list(&prepared.drawn);
+        let manifest = self.package.manifest();
+        let view = FrameView {
+            camera: &camera,
+            style: &self.options.style,
+            roads: self.options.roads,
+            exaggeration: self.options.exaggeration,
+            point_scale: manifest.point_scale,
+            height_range_m: self.height_range_m,
+            wall_m: FrameView::wall_beside_m(self.height_range_m),
+            cell_px: self.options.cell_px,
+            latitude_deg: manifest.wgs84_bounds.center()[1],
+            is_wireframe: false,
+        };
+        self.renderer.draw_timed(self.gpu, &view, &tiles, &self.targets, self.timer.as_mut());
+        self.gpu.finish()?;
+        let draw_ms = ms_since(started);
         self.next += 1;
         Ok(Some(FrameRecord {
             frame,
             time_s,
             pose,
-            tiles_drawn: drawn.tiles,
+            tiles_drawn: tiles.len(),
             tiles_loaded: prepared.loaded,
             tiles_uploaded: prepared.uploaded,
             tiles_evicted: prepared.evicted,
             tiles_missing: prepared.missing,
-            triangles: drawn.triangles,
-            road_segments: drawn.road_segments,
-            gpu_bytes: self.tiles.gpu_bytes(),
+            triangles: tiles.iter().map(|tile| tile.buffers.triangles).sum(),
+            road_segments: tiles.iter().map(|tile| tile.road_segments(&view)).sum(),
+            gpu_bytes: above_bytes + resident.gpu_bytes(),
             select_ms: prepared.select_ms,
             decode_ms: prepared.decode_ms,
             upload_ms: prepared.upload_ms,
-            draw_ms: drawn.draw_ms,
-            passes: drawn.passes,
-        }))
-    }
-
-    /// Draws the tiles of a frame, waits until it is drawn and counts what was drawn.
-    fn draw(&mut self, camera: &Camera, prepared: &FrameTiles) -> Result<DrawnFrame, ReplayError> {
-        let started = Instant::now();
-        let buffers = self.tiles.buffers();
-        let tiles: Vec<DrawTile<'_>> = prepared
-            .drawn
-            .iter()
-            .filter_map(|drawn| {
-                let buffers = buffers.get(&drawn.id)?;
-                Some(DrawTile { buffers, skirt_depth_m: drawn.skirt_depth_m })
-            })
-            .collect();
-        let roads = self.options.roads;
-        let view = FrameView {
-            camera,
-            style: &self.options.style,
-            roads,
-            exaggeration: self.options.exaggeration,
-            point_scale: self.package.manifest().point_scale,
-            height_range_m: self.height_range_m,
-            wall_m: FrameView::wall_beside_m(self.height_range_m),
-            cell_px: self.options.cell_px,
-            latitude_deg: self.package.manifest().wgs84_bounds.center()[1],
-            wireframe: Wireframe::Hidden,
-        };
-        self.renderer.draw_timed(self.gpu, &view, &tiles, &self.targets, self.timer.as_mut());
-        self.gpu.finish()?;
-        let draw_ms = ms_since(started);
-        Ok(DrawnFrame {
-            tiles: tiles.len(),
-            triangles: tiles.iter().map(|tile| tile.buffers.triangles()).sum(),
-            road_segments: tiles.iter().map(|tile| tile.road_segments(&view)).sum(),
             draw_ms,
             passes: self.timer.as_mut().map(|timer| timer.read(self.gpu)).transpose()?,
-        })
+        }))
     }
 
     /// The picture of the frame drawn last, with credits.
@@ -222,7 +185,7 @@ impl<'a> Replay<'a> {
     /// # Errors
     /// When the device is lost.
     pub fn picture(&self) -> Result<RgbaImage, ReplayError> {
-        let mut picture = self.targets.picture().read_image(self.gpu)?;
+        let mut picture = self.targets.picture.read_image(self.gpu)?;
         draw_attribution(&mut picture, &self.package.manifest().attribution);
         Ok(picture)
     }
@@ -236,7 +199,7 @@ impl<'a> Replay<'a> {
     /// The frames in which the flight comes too near to the ground; the eye is lifted there, as in a window.
     #[must_use]
     pub fn lifted(&self) -> Lifted {
-        self.survey.lifted()
+        self.survey.lifted
     }
 
     fn vertical_scale(&self) -> f64 {

@@ -4,7 +4,7 @@ mod level_connectors;
 
 use std::collections::BTreeSet;
 
-use corniche_roads::{FunctionalRoadClass, OwnWidth};
+use corniche_roads::FunctionalRoadClass;
 
 use crate::{
     camera::{Camera, WorldBox},
@@ -12,7 +12,7 @@ use crate::{
     frame_view::FrameView,
     lod::{self, Drawn, Quality},
     options::RoadMethod,
-    tiles::{LoadTileError, TileGeometry, TileSource, TileStore, WideWay},
+    tiles::{LoadTileError, RoadKind, TileGeometry, TileSource, TileStore, WideWay},
 };
 
 pub(crate) use self::level_connectors::{BorderTile, LevelConnector, level_connectors};
@@ -21,35 +21,24 @@ pub(crate) use self::level_connectors::{BorderTile, LevelConnector, level_connec
 /// errors and heights are read, and the slopes with which finer tiles are shaded.
 ///
 /// # Errors
-/// When a tile cannot be read, or `is_stopped` returned true.
-pub fn settle<S: TileSource + Sync + ?Sized>(
+/// When a tile cannot be read, or `check`, which is asked with each, fails.
+pub fn settle<S: TileSource + Sync + ?Sized, E: From<LoadTileError> + Send>(
     store: &mut TileStore<'_, S>,
     camera: &Camera,
     quality: Quality,
-    is_stopped: &dyn Fn() -> bool,
-) -> Result<Vec<Drawn>, SettleError> {
+    check: impl Fn() -> Result<(), E>,
+) -> Result<Vec<Drawn>, E> {
     loop {
         let selection = lod::select(store, camera, quality);
-        let check_stop = || if is_stopped() { Err(SettleError::Stopped) } else { Ok(()) };
         for request in &selection.requests {
-            check_stop()?;
+            check()?;
             store.pass(request.id)?;
         }
         if selection.requests.is_empty() {
-            store.load_drawn(&selection.drawn, check_stop)?;
+            store.load_drawn(&selection.drawn, check)?;
             return Ok(selection.drawn);
         }
     }
-}
-
-/// Why the tiles of a view cannot be loaded.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
-pub enum SettleError {
-    #[error(transparent)]
-    Load(#[from] LoadTileError),
-    #[error("interrupted")]
-    Stopped,
 }
 
 /// The tiles to draw with the depths of their skirts. Tiles that are not loaded are left out.
@@ -91,18 +80,12 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
 
 /// The largest width near the eye that a road of a class in a tile is drawn with; `None` without such a road.
 fn widest_m(tile: &TileGeometry, view: &FrameView<'_>, class: FunctionalRoadClass) -> Option<f32> {
-    let width_m = |own| view.style.width_m(class, own);
-    let widest = |widths: &mut dyn Iterator<Item = OwnWidth>| widths.map(width_m).reduce(f32::max);
-    let decks = tile.decks.of_class(class).iter().map(|piece| piece.own_width);
+    let width_m = |kind: RoadKind| view.style.width_m(class, kind.own_width);
+    let widest = |kinds: &mut dyn Iterator<Item = RoadKind>| kinds.map(width_m).reduce(f32::max);
+    let decks = tile.decks.kinds_of(class);
     match view.roads.method {
-        RoadMethod::Geometry => {
-            let on_ground = tile.roads.of_class(class).iter().map(|piece| piece.own_width);
-            widest(&mut on_ground.chain(decks))
-        }
-        RoadMethod::ShadowVolumes => {
-            let on_ground = tile.volumes.of_class(class).iter().map(|piece| piece.own_width);
-            widest(&mut on_ground.chain(decks))
-        }
+        RoadMethod::Geometry => widest(&mut tile.roads.kinds_of(class).chain(decks)),
+        RoadMethod::ShadowVolumes => widest(&mut tile.volumes.kinds_of(class).chain(decks)),
         RoadMethod::None => None,
     }
 }
@@ -112,7 +95,8 @@ fn widest_m(tile: &TileGeometry, view: &FrameView<'_>, class: FunctionalRoadClas
 #[must_use]
 pub fn capped_ways<'a>(tiles: impl Iterator<Item = &'a TileGeometry>, view: &FrameView<'_>) -> u64 {
     let is_capped = |way: &&WideWay| {
-        view.roads.classes.contains(way.class) && view.style.is_capped(way.own_width)
+        let RoadKind { class, own_width, .. } = way.kind;
+        view.roads.classes.contains(class) && view.style.is_capped(own_width)
     };
     let ways = tiles.flat_map(|tile| tile.wide_ways.iter().filter(is_capped));
     let ids: BTreeSet<i64> = ways.map(|way| way.way_id).collect();

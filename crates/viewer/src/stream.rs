@@ -79,7 +79,8 @@ pub struct Streamer {
     loading: BTreeSet<TileId>,
     waiting: BTreeMap<TileId, TileFacts>,
     resident: BTreeMap<TileId, Resident>,
-    resident_bytes: u64,
+    /// How many bytes of tiles are on the graphics card.
+    pub resident_bytes: u64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -112,12 +113,6 @@ impl Streamer {
     /// A tile of [`Plan::unwanted`] is not loaded any more and will not arrive.
     pub fn abandoned(&mut self, id: TileId) {
         self.loading.remove(&id);
-    }
-
-    /// How many bytes of tiles are on the graphics card.
-    #[must_use]
-    pub fn resident_bytes(&self) -> u64 {
-        self.resident_bytes
     }
 
     /// Plans the next frame, seen from `camera`. `ahead` is where the camera will be soon: tiles for it are loaded in

@@ -132,7 +132,7 @@ impl Driver {
             ids.map(|id| facts(*id).gpu_bytes).sum()
         };
         let resident_bytes = bytes(&mut self.on_card.iter());
-        assert_eq!(resident_bytes, self.streamer.resident_bytes());
+        assert_eq!(resident_bytes, self.streamer.resident_bytes);
         assert!(resident_bytes <= self.budget.gpu_bytes);
         let uploaded_bytes = bytes(&mut plan.upload.iter());
         assert!(uploaded_bytes <= self.budget.upload_bytes_per_frame || plan.upload.len() == 1);
@@ -232,7 +232,7 @@ fn what_was_used_least_recently_goes_first() {
         for view in views {
             driver.settle(view);
         }
-        driver.streamer.resident_bytes()
+        driver.streamer.resident_bytes
     };
     // There is room for the tiles of two of the three views, and for tiles of the first one that are also beside those of
     // the others.

@@ -37,17 +37,18 @@ pub use self::{
     decoder::TileDecoder,
     drawn_area::DrawnArea,
     geometry::{TileGeometry, TransferError},
-    line_layers::{LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer},
+    line_layers::{
+        LayerLine, LineLayer, LineLayers, LineMethods, Overlays, TileLayer, TileSurface,
+    },
     map_extent::MapExtent,
     package::{PackageTiles, may_have_roads},
     photo::PhotoImage,
     roads::{
-        DashPlace, DeckLine, DeckPiece, DeckPieces, RoadList, RoadLook, RoadSegment, RoadSegments,
-        RoadVolume, RoadVolumes, TileLines,
+        DashPlace, DeckLine, DeckPiece, DeckPieces, RoadKind, RoadList, RoadLook, RoadSegment,
+        RoadSegments, RoadVolume, RoadVolumes, TileLines,
     },
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::{MOST_LOADERS, TileStore},
-    tile_surface::TileSurface,
 };
 pub(crate) use self::{
     geometry::{WideWay, plan_around},

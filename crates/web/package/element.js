@@ -20,6 +20,11 @@ const WIDE = 720;
 const PANEL = 314;
 const USUAL_CREDIT = "© OpenStreetMap contributors";
 
+/** In words, why something cannot be; "" where it can. */
+function refuse(/** @type {string} */ why) {
+  if (why !== "") throw new RangeError(why);
+}
+
 /** A map of a package. Attributes, properties and events are in README.md and corniche-map.d.ts. */
 export class CornicheMap extends HTMLElement {
   static observedAttributes = ["src", "look-at", "label", "controls", "gestures", "hash", ...SETTINGS.map(([attribute]) => attribute)];
@@ -114,8 +119,7 @@ export class CornicheMap extends HTMLElement {
   }
 
   set settings(change) {
-    const why = this.#settings.set(change);
-    if (why !== "") throw new RangeError(why);
+    refuse(this.#settings.set(change));
   }
 
   /** What the package is; `null` before it is open. */
@@ -139,14 +143,12 @@ export class CornicheMap extends HTMLElement {
 
   /** Moves to a place. @param {any} place @param {{ jump?: boolean }} [options] */
   lookAt(place, options = {}) {
-    const why = this.#need().lookAt(place, options.jump ?? false);
-    if (why !== "") throw new RangeError(why);
+    refuse(this.#need().lookAt(place, options.jump ?? false));
   }
 
   /** Moves to "lon,lat". @param {string} text */
   goTo(text) {
-    const why = this.#need().goTo(text);
-    if (why !== "") throw new RangeError(why);
+    refuse(this.#need().goTo(text));
   }
 
   /** "north-up", "reset", "toggle-fly" or "toggle-above". @param {string} name */
@@ -170,8 +172,7 @@ export class CornicheMap extends HTMLElement {
 
   /** Flies a recorded flight. @param {string} flight */
   async play(flight) {
-    const why = await this.#need().actions.play(flight);
-    if (why !== "") throw new RangeError(why);
+    refuse(await this.#need().actions.play(flight));
   }
 
   /** The map as a PNG with its credits. */
@@ -215,9 +216,15 @@ export class CornicheMap extends HTMLElement {
     this.#layout.label(this.getAttribute("label") ?? "Map");
   }
 
+  /** The groups of controls that are shown. */
+  #shown() {
+    return controlsOf(this.getAttribute("controls"));
+  }
+
   #controls() {
-    this.#layout.controls(controlsOf(this.getAttribute("controls")));
-    if (!controlsOf(this.getAttribute("controls")).has("panel")) this.#showPanel(false);
+    const shown = this.#shown();
+    this.#layout.controls(shown);
+    if (!shown.has("panel")) this.#showPanel(false);
   }
 
   /** A map that fills the screen has no page to scroll. */
@@ -229,7 +236,7 @@ export class CornicheMap extends HTMLElement {
   #opensPanel() {
     const wish = this.getAttribute("panel");
     return (
-      controlsOf(this.getAttribute("controls")).has("panel") &&
+      this.#shown().has("panel") &&
       (wish === null ? this.clientWidth >= WIDE : wish !== "closed" && this.clientWidth > NARROW)
     );
   }
@@ -291,7 +298,7 @@ export class CornicheMap extends HTMLElement {
         hash: () => this.#hash(),
         failed: (failure, from) => this.#lose(failure, from),
         emit: (name, detail, cancelable) => this.#emit(name, detail, cancelable),
-        showCard: () => controlsOf(this.getAttribute("controls")).has("card"),
+        showCard: () => this.#shown().has("card"),
         command: (name) => this.#act(name),
       });
     } catch (error) {
@@ -407,7 +414,7 @@ export class CornicheMap extends HTMLElement {
   #act(/** @type {string} */ name) {
     const session = this.#session;
     const { notices, place, dialog, panelButton } = this.#layout;
-    const shown = controlsOf(this.getAttribute("controls"));
+    const shown = this.#shown();
     if (!session) return false;
     if (name === "close") {
       if (!session.panel.hidden && session.panel.contains(this.shadowRoot?.activeElement)) {

@@ -1,5 +1,7 @@
 // The renderer: its module is fetched and compiled once for a page, however many maps there are.
 
+const ALL_FILES = "Put all files of the package corniche-map into one folder of the server.";
+
 /** What went wrong, in the words that the element shows. */
 export class Failure extends Error {
   /**
@@ -61,11 +63,7 @@ async function fetchModule() {
     );
   }
   if (!answer.ok)
-    throw new Failure(
-      "files",
-      `The server answers ${answer.status} for ${name}.`,
-      "Put all files of the package corniche-map into one folder of the server.",
-    );
+    throw new Failure("files", `The server answers ${answer.status} for ${name}.`, ALL_FILES);
   // A server that does not know the type of the file still has its bytes; they are only compiled later.
   const isTyped = (answer.headers.get("Content-Type") ?? "").startsWith("application/wasm");
   const bytes = isTyped ? null : await answer.arrayBuffer();
@@ -74,7 +72,7 @@ async function fetchModule() {
     throw new Failure(
       "files",
       `The server sends something else for ${name}, of type ${answer.headers.get("Content-Type") ?? "unknown"}.`,
-      "Put all files of the package corniche-map into one folder of the server.",
+      ALL_FILES,
     );
   }
   try {
@@ -95,11 +93,7 @@ async function fetchModule() {
 /** The module's glue, with the module in it. */
 async function start(/** @type {Promise<WebAssembly.Module>} */ module) {
   const script = import("./corniche_web.js").catch((error) => {
-    throw new Failure(
-      "files",
-      `corniche_web.js cannot be loaded: ${error.message}.`,
-      "Put all files of the package corniche-map into one folder of the server.",
-    );
+    throw new Failure("files", `corniche_web.js cannot be loaded: ${error.message}.`, ALL_FILES);
   });
   // The browser sets up its graphics meanwhile. Whether there is an adapter is told later, by the renderer.
   /** @type {any} */ (navigator).gpu?.requestAdapter().catch(() => {});

@@ -1,18 +1,13 @@
 // The dialog with mouse, touch and keys.
 import { make } from "./dom.js";
-import { icons } from "./icons.js";
+import { closeButton } from "./icons.js";
 import { HELP } from "./keys.js";
 
 export function makeHelp() {
   const dialog = make(
     "dialog",
     { class: "help card", "aria-labelledby": "help-title" },
-    make(
-      "header",
-      {},
-      make("h2", { id: "help-title" }, "Mouse, touch and keys"),
-      make("button", { type: "button", class: "icon", "aria-label": "Close", onclick: () => dialog.close() }, icons.close()),
-    ),
+    make("header", {}, make("h2", { id: "help-title" }, "Mouse, touch and keys"), closeButton("Close", () => dialog.close())),
     make(
       "dl",
       { tabIndex: 0, "aria-label": "Mouse, touch and keys" },

@@ -1,5 +1,5 @@
 // Drawings of the buttons: lines of two units in a square of 24.
-import { drawing } from "./dom.js";
+import { drawing, make } from "./dom.js";
 
 export const icons = {
   plus: () => drawing("M12 5v14M5 12h14"),
@@ -17,3 +17,7 @@ export const icons = {
   play: () => drawing("M8 5l11 7-11 7z"),
   warning: () => drawing("M12 4l9 16H3z", "M12 10v5M12 17.5v.5"),
 };
+
+/** The cross that takes something away. */
+export const closeButton = (/** @type {string} */ label, /** @type {() => void} */ onclick, /** @type {string | undefined} */ title = undefined) =>
+  make("button", { type: "button", class: "icon", title, "aria-label": label, onclick }, icons.close());

@@ -1,6 +1,6 @@
 // Notices: what went well disappears by itself, warnings stay until they are dismissed.
 import { make, sentence } from "./dom.js";
-import { icons } from "./icons.js";
+import { closeButton } from "./icons.js";
 
 const TOLD_MS = 5000;
 const MOST = 4;
@@ -21,7 +21,7 @@ export function makeNotices() {
         "div",
         { class: `notice card ${kind}`, "data-key": key, "data-times": String(times) },
         make("span", {}, sentence(text), times > 1 ? ` (${times} times)` : null),
-        make("button", { type: "button", class: "icon", "aria-label": "Dismiss", onclick: () => notice.remove() }, icons.close()),
+        closeButton("Dismiss", () => notice.remove()),
       );
       element.append(notice);
       if (kind === "tell") setTimeout(() => notice.remove(), TOLD_MS);

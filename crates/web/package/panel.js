@@ -1,7 +1,7 @@
 // The panel: all settings of the map, its legend, and what can be done with the camera.
 import { action, choice, section, select, slider, toggle } from "./controls.js";
 import { make, setText } from "./dom.js";
-import { icons } from "./icons.js";
+import { closeButton, icons } from "./icons.js";
 import { makeLegend, makeLines } from "./legend.js";
 
 const percent = (/** @type {number} */ value) => `${Math.round(value * 100)} %`;
@@ -107,16 +107,7 @@ export function makePanel(map, about, close) {
   const element = make(
     "section",
     { class: "panel card", "aria-label": "Map settings" },
-    make(
-      "header",
-      {},
-      make("h2", {}, about.name),
-      make(
-        "button",
-        { type: "button", class: "icon", title: "Hide the panel (M)", "aria-label": "Hide the panel", onclick: close },
-        icons.close(),
-      ),
-    ),
+    make("header", {}, make("h2", {}, about.name), closeButton("Hide the panel", close, "Hide the panel (M)")),
     make(
       "div",
       { class: "scroll" },

@@ -1,6 +1,6 @@
 // The card that says what is at a place: its coordinates, its height, and the road with its attributes.
 import { make } from "./dom.js";
-import { icons } from "./icons.js";
+import { closeButton } from "./icons.js";
 import { coordinatesText } from "./status.js";
 
 export function makePlaceCard() {
@@ -9,12 +9,7 @@ export function makePlaceCard() {
   const element = make(
     "section",
     { class: "place-card card", hidden: true, "aria-label": "Place", "aria-live": "polite" },
-    make(
-      "header",
-      {},
-      title,
-      make("button", { type: "button", class: "icon", "aria-label": "Close", onclick: () => hide() }, icons.close()),
-    ),
+    make("header", {}, title, closeButton("Close", () => hide())),
     body,
   );
 

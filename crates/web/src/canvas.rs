@@ -1,6 +1,6 @@
 //! The canvas of a page, to which the pictures of a map are copied.
 
-use corniche_live::{MapCanvas, MapScene, PixelReading};
+use corniche_live::{MapCanvas, MapScene};
 use corniche_viewer::gpu::Gpu;
 use web_sys::HtmlCanvasElement;
 
@@ -13,7 +13,7 @@ pub(crate) struct PageCanvas {
     canvas: HtmlCanvasElement,
     configured_px: Option<[u32; 2]>,
     /// Where the second of two pictures begins, as a share of the width.
-    divider: f32,
+    pub(crate) divider: f32,
 }
 
 impl PageCanvas {
@@ -43,11 +43,6 @@ impl PageCanvas {
         Ok(Self { map, surface, canvas, configured_px: None, divider: 0.5 })
     }
 
-    /// The device.
-    pub(crate) fn gpu(&self) -> &Gpu {
-        self.map.gpu()
-    }
-
     /// Draws the scene and shows it, unless it is shown already; of two pictures, the second from
     /// the share `divider` of the width on. Returns whether something was drawn.
     ///
@@ -57,26 +52,26 @@ impl PageCanvas {
         let is_new = self.map.draw(scene).map_err(|error| Problem::of_gpu(&error))?;
         if is_new {
             self.divider = divider;
-            self.show(scene.camera.size_px())?;
+            self.show(scene.camera.size_px)?;
         }
         Ok(is_new)
     }
 
     /// Copies the pictures to the canvas. The canvas has the format of the pictures, so no pass is needed.
     fn show(&mut self, size_px: [u32; 2]) -> Result<(), Problem> {
-        let gpu = self.map.gpu();
+        let gpu = &self.map.gpu;
         if self.configured_px != Some(size_px) {
             let [width, height] = size_px;
             self.canvas.set_width(width);
             self.canvas.set_height(height);
-            let usual = self.surface.get_default_config(gpu.adapter(), width, height);
+            let usual = self.surface.get_default_config(&gpu.adapter, width, height);
             let usual = usual.ok_or_else(|| {
                 Problem::new("limits", "The canvas cannot be drawn to.", "Try another browser.")
             })?;
             let usage = wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::RENDER_ATTACHMENT;
             let format = wgpu::TextureFormat::Rgba8Unorm;
             self.surface
-                .configure(gpu.device(), &wgpu::SurfaceConfiguration { usage, format, ..usual });
+                .configure(&gpu.device, &wgpu::SurfaceConfiguration { usage, format, ..usual });
             self.configured_px = Some(size_px);
         }
         let (wgpu::CurrentSurfaceTexture::Success(texture)
@@ -86,33 +81,22 @@ impl PageCanvas {
             self.map.forget_shown();
             return Ok(());
         };
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("canvas") };
-        let mut encoder = gpu.device().create_command_encoder(&descriptor);
-        for (picture, columns) in self.map.parts(self.divider) {
-            let origin = wgpu::Origin3d { x: columns.start, y: 0, z: 0 };
-            let extent = wgpu::Extent3d {
-                width: columns.end - columns.start,
-                height: size_px[1],
-                depth_or_array_layers: 1,
-            };
-            if extent.width > 0 {
-                encoder.copy_texture_to_texture(
-                    wgpu::TexelCopyTextureInfo {
-                        origin,
-                        ..picture.view().texture().as_image_copy()
-                    },
-                    wgpu::TexelCopyTextureInfo { origin, ..texture.texture.as_image_copy() },
-                    extent,
-                );
+        let [_, height] = size_px;
+        gpu.submit("canvas", |encoder| {
+            for (picture, columns) in self.map.parts(self.divider) {
+                let origin = wgpu::Origin3d { x: columns.start, y: 0, z: 0 };
+                let (from, into) = (picture.view().texture(), &texture.texture);
+                let width = columns.end - columns.start;
+                if width > 0 {
+                    encoder.copy_texture_to_texture(
+                        wgpu::TexelCopyTextureInfo { origin, ..from.as_image_copy() },
+                        wgpu::TexelCopyTextureInfo { origin, ..into.as_image_copy() },
+                        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                    );
+                }
             }
-        }
-        gpu.queue().submit([encoder.finish()]);
-        gpu.queue().present(texture);
+        });
+        gpu.queue.present(texture);
         Ok(())
-    }
-
-    /// Begins to read what is shown; `None` where nothing is.
-    pub(crate) fn begin_read(&self) -> Option<PixelReading> {
-        self.map.begin_read(self.divider)
     }
 }

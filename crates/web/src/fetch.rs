@@ -55,57 +55,45 @@ async fn answer(
     let header = |name: &str| response.headers().get(name).ok().flatten();
     let status = response.status();
     let open_again = "Open the map again; fetch or build the package again if that does not help.";
-    let refused = match status {
-        206 => None,
-        200 => Some((
-            "no-ranges",
-            "The server ignores which bytes are asked for: it sends the whole file, because it knows no range requests.".to_owned(),
-            RANGES,
-        )),
-        404 | 410 => Some((
-            "not-found",
-            format!("The server has no such file ({status})."),
-            "Check the address of the package.",
-        )),
-        401 | 403 => Some((
-            "not-found",
-            format!("The server refuses access ({status})."),
-            "Check the address, and whether the file is public.",
-        )),
-        416 => Some((
-            "changed",
-            "The file on the server is shorter than it was, or empty.".to_owned(),
-            open_again,
-        )),
-        _ => Some((
-            "network",
-            format!("The server answers {status} {}.", response.status_text()),
-            LATER,
-        )),
-    };
-    if let Some((kind, message, advice)) = refused {
+    let refuse = |kind, message: &str, advice| -> Result<Answer, Problem> {
         drop_body(&response);
-        return Err(Problem::new(kind, message, advice));
+        Err(Problem::new(kind, message, advice))
+    };
+    match status {
+        206 => {}
+        200 => {
+            let message = "The server ignores which bytes are asked for: it sends the whole file, because it knows no range requests.";
+            return refuse("no-ranges", message, RANGES);
+        }
+        404 | 410 => {
+            let message = format!("The server has no such file ({status}).");
+            return refuse("not-found", &message, "Check the address of the package.");
+        }
+        401 | 403 => {
+            let message = format!("The server refuses access ({status}).");
+            let advice = "Check the address, and whether the file is public.";
+            return refuse("not-found", &message, advice);
+        }
+        416 => {
+            let message = "The file on the server is shorter than it was, or empty.";
+            return refuse("changed", message, open_again);
+        }
+        _ => {
+            let message = format!("The server answers {status} {}.", response.status_text());
+            return refuse("network", &message, LATER);
+        }
     }
     if let Some(encoding) = header("content-encoding").filter(|encoding| encoding != "identity") {
         drop_body(&response);
         return Err(compressed(&encoding));
     }
     let Some(told) = header("content-range") else {
-        drop_body(&response);
-        return Err(Problem::new(
-            "cors",
-            "The page must not see which bytes the server sends (Content-Range).",
-            EXPOSE,
-        ));
+        let message = "The page must not see which bytes the server sends (Content-Range).";
+        return refuse("cors", message, EXPOSE);
     };
     let Some(file_bytes) = file_bytes_of(&told, first) else {
-        drop_body(&response);
-        return Err(Problem::new(
-            "no-ranges",
-            format!("The server sends other bytes than asked for: {told}."),
-            RANGES,
-        ));
+        let message = format!("The server sends other bytes than asked for: {told}.");
+        return refuse("no-ranges", &message, RANGES);
     };
     let cut_off = |what: &str| {
         let message = format!("The answer of the server was cut off: {what}.");

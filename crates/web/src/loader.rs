@@ -52,7 +52,7 @@ impl Tileset {
             let advice = "Fetch or build the package again.";
             return Problem::new("damaged", with_causes(error), advice);
         };
-        let told = self.package.package().source().take_problem();
+        let told = self.package.package.source().take_problem();
         told.unwrap_or_else(|| Problem::new("network", why, ""))
     }
 }

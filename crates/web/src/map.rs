@@ -67,7 +67,7 @@ impl Map {
         let reading = Reading::of(&shown.decoder(&style));
         self.session.change(shown);
         self.session.styles = style_list(&changed.style, style);
-        self.session.camera.navigator.set_inertia(changed.inertia());
+        self.session.camera.navigator.has_inertia = changed.inertia;
         if self.loader.read_otherwise(reading) {
             self.session.begin_again();
             self.canvas.map.clear();
@@ -79,10 +79,10 @@ impl Map {
 
     /// What is known of the map before anything is drawn.
     pub(crate) fn about(&self) -> Value {
-        let mut about = self.session.about(&self.labels, self.canvas.gpu());
+        let mut about = self.session.about(&self.labels, &self.canvas.map.gpu);
         about["src"] = json!(self.address);
         about["styles"] = json!(tables::style_names());
-        about["bytes"] = json!(self.tileset.package.package().source().file_bytes());
+        about["bytes"] = json!(self.tileset.package.package.source().file_bytes());
         about
     }
 
@@ -109,8 +109,8 @@ impl Map {
             self.warn("The memory for tiles is full: this view is coarser than asked.");
         }
         let tiles = &self.session.tiles;
-        let is_there = tiles.missing() == 0 && !step.is_under_way;
-        let is_stuck = tiles.is_full() || self.loader.troubled() > 0;
+        let is_there = tiles.missing == 0 && !step.is_under_way;
+        let is_stuck = tiles.is_full || self.loader.troubled() > 0;
         let is_waiting = self
             .anew_s
             .is_some_and(|begun_s| !is_there && !is_stuck && now_s - begun_s < MOST_WAIT_S);
@@ -123,7 +123,7 @@ impl Map {
     }
 
     fn check_device(&self) -> Result<(), Problem> {
-        let gpu = self.canvas.gpu();
+        let gpu = &self.canvas.map.gpu;
         if gpu.is_lost() {
             return Err(Problem::new(
                 "device-lost",
@@ -159,10 +159,10 @@ impl Map {
         let is_busy = is_under_way || self.is_hurried || self.anew_s.is_some();
         // Nothing is to be waited for from a server that gives no tiles.
         let rest = FrameRest { is_busy, troubled: self.loader.troubled() };
-        let counts = self.canvas.map.counts();
+        let counts = self.canvas.map.counts;
         let (mut report, is_settled) =
             self.session.report(counts, rest, self.pixels_per_point, now_s);
-        let traffic = self.tileset.package.package().source().traffic();
+        let traffic = self.tileset.package.package.source().traffic();
         report["requests"] = json!(traffic.requests);
         report["bytes"] = json!(traffic.bytes);
         report["notices"] = Value::Array(std::mem::take(&mut self.notices));

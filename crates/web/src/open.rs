@@ -50,14 +50,6 @@ struct Options {
     pixels_per_point: Option<f64>,
 }
 
-#[expect(
-    clippy::arc_with_non_send_sync,
-    reason = "the tiles of the native viewer are shared between threads; a page has one"
-)]
-fn shared(package: PackageTiles<WebSource>) -> Arc<PackageTiles<WebSource>> {
-    Arc::new(package)
-}
-
 /// What is asked of the first view.
 struct FirstViewRequest<'a> {
     settings: &'a MapSettings,
@@ -113,7 +105,9 @@ impl Opened {
         let told = |error: &OpenError| Problem::opening(error, source.take_problem());
         let package = Package::open(source.clone()).await.map_err(|error| told(&error))?;
         let metadata = package.metadata().await.map_err(|error| told(&error))?;
-        let package = shared(PackageTiles::new(package).await.map_err(|error| told(&error))?);
+        let package = PackageTiles::new(package).await.map_err(|error| told(&error))?;
+        #[expect(clippy::arc_with_non_send_sync, reason = "a page has one thread")]
+        let package = Arc::new(package);
         if !package.exists(TileId::ROOT) {
             return Err(no_ground("The package has no tiles."));
         }
@@ -196,7 +190,7 @@ pub(crate) async fn open(
     let (canvas, opened) = try_join(PageCanvas::new(canvas), opened).await?;
     let Opened { tileset, loader, ground, home } = opened;
     let manifest = tileset.package.manifest();
-    let size_px = clamped(asked_px, canvas.gpu().max_side_px());
+    let size_px = clamped(asked_px, canvas.map.gpu.max_side_px());
     let home = if size_px == asked_px { home } else { first.view(manifest, ground, size_px)? };
     let pixels_per_point = options.pixels_per_point.unwrap_or(1.0);
     let package: Arc<dyn MapPackage> = Arc::<PackageTiles<WebSource>>::clone(&tileset.package);
@@ -214,7 +208,7 @@ pub(crate) async fn open(
         budget: StreamBudget { gpu_bytes: options.gpu_bytes.unwrap_or(BUDGET.gpu_bytes), ..BUDGET },
         size_px,
         pixels_per_point: pixels_per_point as f32,
-        inertia: record.inertia(),
+        has_inertia: record.inertia,
     });
     Ok(Map {
         address,

@@ -14,6 +14,7 @@ use wasm_bindgen_futures::future_to_promise;
 use web_sys::HtmlCanvasElement;
 
 use crate::{
+    canvas::PageCanvas,
     host::{Host, pause},
     map::{Map, changed, clamped},
     open::open,
@@ -61,7 +62,7 @@ impl MapView {
 
     /// The canvas has this size in pixels of the screen now.
     pub fn resize(&mut self, width_px: u32, height_px: u32, pixels_per_point: f64) {
-        self.0.size_px = clamped([width_px, height_px], self.0.canvas.gpu().max_side_px());
+        self.0.size_px = clamped([width_px, height_px], self.0.canvas.map.gpu.max_side_px());
         self.0.pixels_per_point = pixels_per_point.max(0.1);
     }
 
@@ -77,7 +78,7 @@ impl MapView {
     /// Whether nothing is wrong with the device or the server that the next frame would tell. A page at rest asks from time to time.
     #[must_use]
     pub fn is_well(&self) -> bool {
-        let gpu = self.0.canvas.gpu();
+        let gpu = &self.0.canvas.map.gpu;
         !gpu.is_lost() && !gpu.has_fault()
     }
 
@@ -117,9 +118,8 @@ impl MapView {
     /// Two fingers touch the map, or are elsewhere now.
     pub fn two_fingers(&mut self, ax: f64, ay: f64, bx: f64, by: f64, now_s: f64) {
         self.0.session.take_over();
-        self.0
-            .session
-            .input(&Input::TwoFingers { at_px: [DVec2::new(ax, ay), DVec2::new(bx, by)] }, now_s);
+        let at_px = [DVec2::new(ax, ay), DVec2::new(bx, by)];
+        self.0.session.input(&Input::TwoFingers { at_px }, now_s);
     }
 
     /// Less than two fingers touch the map.
@@ -142,7 +142,7 @@ impl MapView {
             return false;
         }
         let Some(key) = Key::of_code(code) else { return false };
-        let is_map_mode = self.0.session.camera.navigator.mode() == Mode::Map;
+        let is_map_mode = self.0.session.camera.navigator.mode == Mode::Map;
         if control || (key.is_for_flying() && is_map_mode) {
             return false;
         }
@@ -240,7 +240,8 @@ impl MapView {
 
     /// The pixels that are shown: a promise of bytes, four a pixel, rows from the top.
     pub fn read_pixels(&self) -> Promise {
-        let (reading, gpu) = (self.0.canvas.begin_read(), Rc::clone(self.0.canvas.map.gpu()));
+        let PageCanvas { map, divider, .. } = &self.0.canvas;
+        let (reading, gpu) = (map.begin_read(*divider), Rc::clone(&map.gpu));
         future_to_promise(async move {
             let told = |error: ReadBackError| JsValue::from(Problem::other(&error));
             let Some(mut reading) = reading else {

@@ -60,7 +60,7 @@ impl App {
         let manifest = package.manifest();
         let panel_width = panel::first_width(size_px[0] as f32 / pixels_per_point);
         let covered_px = (panel_width * pixels_per_point) as u32;
-        let scale = request.exaggeration * manifest.point_scale;
+        let scale = request.settings.exaggeration * manifest.point_scale;
         let home = first_view(request.camera, manifest, ground, scale, size_px, covered_px)?;
         let settings = first_settings(&request, gpu.is_software(), panel_width > 0.0);
         let trace = request
@@ -69,7 +69,7 @@ impl App {
             .transpose()
             .map_err(|source| WindowError::Trace { source })?;
         let mut notices = Notices::default();
-        notices.warn_of_software(gpu, settings.roads.method, request.roads.method);
+        notices.warn_of_software(gpu, settings.roads.method, request.settings.roads.method);
         let ways = (request.save_drawing, platform.clock_s);
         let drawing = Drawing::new(&request.drawn_lines, ways, manifest, &mut notices);
         let session = Session::new(SessionStart {
@@ -82,7 +82,7 @@ impl App {
             budget: request.budget,
             size_px,
             pixels_per_point,
-            inertia: request.inertia,
+            has_inertia: request.has_inertia,
         });
         let desk = MapDesk {
             session,
@@ -106,7 +106,7 @@ impl App {
 
     /// Whether the mouse at this pixel of the window is the map's, not the panel's.
     pub(crate) fn is_map(&self, ui: &egui::Context, at_px: DVec2) -> bool {
-        let at = at_px / self.desk.session.camera.pixels_per_point();
+        let at = at_px / self.desk.session.camera.pixels_per_point;
         let at = pos2(at.x as f32, at.y as f32);
         // Lists that hang from the panel lie in layers of their own.
         let is_in_front =
@@ -117,7 +117,7 @@ impl App {
     /// Does what a key or the panel asks for.
     pub(crate) fn command(&mut self, command: Command, now_s: f64) {
         match self.desk.command(command, now_s) {
-            Some(Errand::Take(shot)) => self.captures.want(shot),
+            Some(Errand::Take(shot)) => self.captures.wanted.push(shot),
             Some(Errand::SaveFlight(text)) => self.captures.files.save_flight(text),
             Some(Errand::Copy(text)) => self.to_copy = Some(text),
             None => {}
@@ -149,18 +149,14 @@ impl App {
 
 /// The settings with which a window opens. `is_software` says that the processor draws.
 fn first_settings(request: &WindowRequest, is_software: bool, is_panel_open: bool) -> MapSettings {
-    let method = request.software_method.filter(|_| is_software).unwrap_or(request.roads.method);
+    let MapSettings { roads, .. } = request.settings;
+    let method = request.software_method.filter(|_| is_software).unwrap_or(roads.method);
     let usual_samples = if is_software { 1 } else { 2 };
     MapSettings {
-        photo: request.photo,
-        areas: request.areas,
-        boundaries: request.boundaries,
-        exaggeration: request.exaggeration,
-        screen_space_error_px: request.screen_space_error_px,
-        cell_px: request.cell_px,
+        roads: RoadOptions { method, ..roads },
         samples_per_side: request.samples_per_side.unwrap_or(usual_samples),
         is_panel_open,
-        ..MapSettings::usual(RoadOptions { method, ..request.roads })
+        ..request.settings.clone()
     }
 }
 

@@ -7,11 +7,7 @@ use std::{
 };
 
 use corniche_geom::TileId;
-use corniche_live::{
-    LoaderThreads, NamedStyle, Redraw, Visibility,
-    controls::Inertia,
-    polled_loader::{PolledLoader, late_package, polled},
-};
+use corniche_live::{Loaded, LoaderThreads, NamedStyle, Redraw, TileLoader};
 use corniche_styles::Style;
 use corniche_viewer::{
     CameraRequest, RoadMethod, RoadOptions,
@@ -30,31 +26,52 @@ fn request() -> WindowRequest {
         name: "small".to_owned(),
         size_px: SIZE_PX,
         camera: CameraRequest::Overview,
-        roads: RoadOptions::of(RoadMethod::ShadowVolumes),
+        settings: MapSettings {
+            screen_space_error_px: 0.01,
+            ..MapSettings::usual(RoadOptions::of(RoadMethod::ShadowVolumes))
+        },
         software_method: Some(RoadMethod::Geometry),
         class_labels: std::array::from_fn(|class| format!("class {class}")),
         command_of: Box::new(|shown| format!("{shown:?}")),
         styles: vec![NamedStyle { name: "atlas".to_owned(), style: Style::road_atlas() }],
         reload: None,
-        photo: None,
-        areas: Visibility::Shown,
-        boundaries: Visibility::Shown,
         overlays: Vec::new(),
         drawn_lines: Vec::new(),
         save_drawing: Box::new(|_| Ok(PathBuf::new())),
-        screen_space_error_px: 0.01,
-        cell_px: f64::INFINITY,
-        exaggeration: 1.0,
         samples_per_side: Some(1),
         budget: StreamBudget {
             tiles_in_flight: 8,
             upload_bytes_per_frame: 1 << 20,
             gpu_bytes: 1 << 24,
         },
-        inertia: Inertia::Off,
+        has_inertia: false,
         folder: PathBuf::new(),
         trace: None,
         is_stopped: Box::new(|| false),
+    }
+}
+
+/// Loads without threads: each tile comes a few frames after it was asked for.
+struct LateLoader {
+    source: Arc<PackageSource>,
+    asked: Vec<(TileId, u32)>,
+}
+
+impl TileLoader for LateLoader {
+    fn request(&mut self, ids: &[TileId]) {
+        self.asked.extend(ids.iter().map(|id| (*id, 3)));
+    }
+
+    fn forget(&mut self) {
+        self.asked.clear();
+    }
+
+    fn arrivals(&mut self) -> Vec<Loaded> {
+        for (_, frames) in &mut self.asked {
+            *frames -= 1;
+        }
+        let there = self.asked.extract_if(.., |(_, frames)| *frames == 0);
+        there.map(|(id, _)| Loaded { id, tile: self.source.load(id) }).collect()
     }
 }
 
@@ -92,9 +109,9 @@ fn drawn_at_rest(
         let frame = app.frame(canvas, &ui, input).unwrap();
         canvas.free_textures(&frame.unused_textures);
         let tiles = &app.desk.session.tiles;
-        let (missing, loading) = (tiles.missing(), tiles.loading());
+        let (missing, loading) = (tiles.missing, tiles.loading());
         if frame.redraw != Redraw::Now && missing == 0 && loading == 0 {
-            let drawn = tiles.drawn().to_vec();
+            let drawn = tiles.drawn.clone();
             assert!(app.captures.files.finish().is_empty());
             return drawn;
         }
@@ -105,18 +122,16 @@ fn drawn_at_rest(
 #[test]
 fn a_window_on_tiles_that_nothing_waits_for_draws_what_one_on_a_file_draws() {
     let Some(mut first) = canvas() else { return };
-    let late = late_package(corniche_testing::package::written());
-    let root = polled(late.load(TileId::ROOT)).unwrap();
-    let loader = Box::new(PolledLoader::new(&late));
-    let found = drawn_at_rest(&mut first, late, &root, loader);
-    assert!(found.len() > 1, "{found:?}");
-
-    let Some(mut second) = canvas() else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("small.pmtiles");
     std::fs::write(&path, corniche_testing::package::written()).unwrap();
     let on_disk = Arc::new(PackageSource::open(&path).unwrap());
     let root = on_disk.load(TileId::ROOT).unwrap();
+    let late = Box::new(LateLoader { source: Arc::clone(&on_disk), asked: Vec::new() });
+    let found = drawn_at_rest(&mut first, on_disk.clone(), &root, late);
+    assert!(found.len() > 1, "{found:?}");
+
+    let Some(mut second) = canvas() else { return };
     let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(|| ());
     let threads = LoaderThreads::new(&on_disk, NonZeroUsize::MIN, 8, &wake).unwrap();
     assert_eq!(found, drawn_at_rest(&mut second, on_disk, &root, Box::new(threads)));

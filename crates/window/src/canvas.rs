@@ -3,8 +3,8 @@
 
 mod snapshot;
 
-use corniche_live::{MapCanvas, MapScene};
-use corniche_viewer::gpu::{Gpu, GpuError};
+use corniche_live::{MapCanvas, MapScene, PixelReading};
+use corniche_viewer::gpu::{Gpu, GpuError, ReadBack};
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_wgpu::ScreenDescriptor;
 
@@ -19,24 +19,6 @@ pub(crate) struct Canvas {
     pictures: Vec<(wgpu::Texture, TextureId)>,
 }
 
-/// The pictures of the map, as large as the window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Pictures {
-    /// One picture.
-    One(TextureId),
-    /// Two pictures, left and right of the divider.
-    Two([TextureId; 2]),
-}
-
-/// What came of drawing a scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Drew {
-    /// The pictures.
-    pub(crate) pictures: Pictures,
-    /// Whether anything was drawn: not if the scene was the same as before.
-    pub(crate) is_new: bool,
-}
-
 impl Canvas {
     /// Nothing drawn yet; the panel will be painted into views of this `format`.
     pub(crate) fn new(gpu: Gpu, format: wgpu::TextureFormat) -> Self {
@@ -45,7 +27,7 @@ impl Canvas {
             ..egui_wgpu::RendererOptions::default()
         };
         Self {
-            ui: egui_wgpu::Renderer::new(gpu.device(), format, options),
+            ui: egui_wgpu::Renderer::new(&gpu.device, format, options),
             format,
             map: MapCanvas::new(gpu),
             pictures: Vec::new(),
@@ -54,14 +36,19 @@ impl Canvas {
 
     /// The device.
     pub(crate) fn gpu(&self) -> &Gpu {
-        self.map.gpu()
+        &self.map.gpu
     }
 
-    /// Draws the scene, unless it is what is shown already.
+    /// The pictures of the map, as large as the window: one, or those left and right of the divider.
+    pub(crate) fn pictures(&self) -> Vec<TextureId> {
+        self.pictures.iter().map(|(_, id)| *id).collect()
+    }
+
+    /// Draws the scene, unless it is what is shown already. Returns whether it was drawn.
     ///
     /// # Errors
     /// When the pictures are beyond what the adapter can draw.
-    pub(crate) fn draw(&mut self, scene: &MapScene) -> Result<Drew, GpuError> {
+    pub(crate) fn draw(&mut self, scene: &MapScene) -> Result<bool, GpuError> {
         let is_new = self.map.draw(scene)?;
         if is_new {
             // Pixel for pixel, or enlarged where they are smaller than the window.
@@ -71,7 +58,7 @@ impl Canvas {
             for (picture, _) in self.map.parts(0.5) {
                 let texture = picture.view().texture();
                 let known = before.iter().position(|(known, _)| known == texture);
-                let device = self.map.gpu().device();
+                let device = &self.map.gpu.device;
                 self.pictures.push(if let Some(place) = known {
                     before.swap_remove(place)
                 } else {
@@ -83,11 +70,7 @@ impl Canvas {
                 self.ui.free_texture(&unused);
             }
         }
-        let pictures = match &self.pictures[..] {
-            [(_, first), (_, second)] => Pictures::Two([*first, *second]),
-            all => Pictures::One(all.first().map_or(TextureId::default(), |(_, id)| *id)),
-        };
-        Ok(Drew { pictures, is_new })
+        Ok(is_new)
     }
 
     /// Whether the pictures shown have all the window's pixels.
@@ -97,16 +80,16 @@ impl Canvas {
 
     /// Begins to read the map that is shown, without panel and overlay; `None` while no map is shown.
     pub(crate) fn snap_map(&self, divider_share: f32) -> Option<Snapshot> {
-        self.map.begin_read(divider_share).map(Snapshot::of_map)
+        self.map.begin_read(divider_share).map(|pixels| Snapshot { pixels, has_blue_first: false })
     }
 
     /// Uploads what the panel changed of its textures; to be called before what was laid out is painted. Returns the
     /// textures to free after that.
     pub(crate) fn take_textures(&mut self, mut delta: TexturesDelta) -> Vec<TextureId> {
-        let gpu = self.map.gpu();
+        let gpu = &self.map.gpu;
         for (id, changes) in &delta.set {
             for change in changes {
-                self.ui.update_texture(gpu.device(), gpu.queue(), *id, change);
+                self.ui.update_texture(&gpu.device, &gpu.queue, *id, change);
             }
         }
         let unused = delta.free.iter().copied().collect();
@@ -128,8 +111,8 @@ impl Canvas {
         screen: &ScreenDescriptor,
         into: &wgpu::TextureView,
     ) {
-        let gpu = self.map.gpu();
-        let (device, queue) = (gpu.device(), gpu.queue());
+        let gpu = &self.map.gpu;
+        let (device, queue) = (&gpu.device, &gpu.queue);
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("window") };
         let mut encoder = device.create_command_encoder(&descriptor);
         let mut commands = self.ui.update_buffers(device, queue, &mut encoder, primitives, screen);
@@ -159,10 +142,17 @@ impl Canvas {
         primitives: &[ClippedPrimitive],
         screen: &ScreenDescriptor,
     ) -> Snapshot {
-        let texture = snapshot::texture(self.gpu(), self.format, screen.size_in_pixels);
+        let (size_px, usage) = (screen.size_in_pixels, wgpu::TextureUsages::RENDER_ATTACHMENT);
+        let usage = usage | wgpu::TextureUsages::COPY_SRC;
+        let texture = self.gpu().texture("picture of the window", self.format, size_px, 1, usage);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         self.paint(primitives, screen, &view);
-        Snapshot::of_window(self.gpu(), &texture)
+        let all = vec![(ReadBack::begin(self.gpu(), &texture), 0..size_px[0])];
+        let has_blue_first = matches!(
+            self.format,
+            wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb
+        );
+        Snapshot { pixels: PixelReading::new(all, size_px), has_blue_first }
     }
 }
 

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use corniche_live::{Compare, PixelReading};
 use corniche_styles::Style;
 use corniche_viewer::{
-    RoadMethod, RoadOptions, Wireframe,
+    RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     gpu::Picture,
 };
@@ -52,7 +52,7 @@ pub(crate) fn scene_of_size(compare: Compare, size_px: [u32; 2]) -> MapScene {
         height_range_m: [0.0, 100.0],
         cell_px: f64::INFINITY,
         latitude_deg: 47.0,
-        wireframe: Wireframe::Hidden,
+        is_wireframe: false,
         drawn: Vec::new(),
         samples_per_side: 1,
         revision: 0,
@@ -67,8 +67,8 @@ fn red_beside_map(ui: &mut egui::Ui, texture: TextureId) {
 }
 
 /// The window with a red left half over the map.
-fn paint(canvas: &mut Canvas, drew: Drew) -> RgbaImage {
-    let Pictures::One(texture) = drew.pictures else { panic!("{drew:?}") };
+fn paint(canvas: &mut Canvas) -> RgbaImage {
+    let [texture] = canvas.pictures()[..] else { panic!("more than one") };
     let ui = egui::Context::default();
     let [width, height] = SIZE_PX.map(|side| side as f32);
     let input = egui::RawInput {
@@ -90,8 +90,8 @@ fn map(canvas: &Canvas) -> RgbaImage {
 #[test]
 fn the_map_is_shown_pixel_for_pixel_beneath_the_panel() {
     let Some(mut canvas) = canvas() else { return };
-    let drew = canvas.draw(&scene(Compare::Off)).unwrap();
-    let (map, window) = (map(&canvas), paint(&mut canvas, drew));
+    canvas.draw(&scene(Compare::Off)).unwrap();
+    let (map, window) = (map(&canvas), paint(&mut canvas));
     assert_eq!(window.dimensions(), (64, 48));
     // Some pixels around the edge are the toolkit's, which smooths it.
     for (x, y, pixel) in window.enumerate_pixels().filter(|(x, ..)| !(30..=34).contains(x)) {
@@ -104,20 +104,15 @@ fn the_map_is_shown_pixel_for_pixel_beneath_the_panel() {
 #[test]
 fn only_another_scene_is_drawn() {
     let Some(mut canvas) = canvas() else { return };
-    let first = canvas.draw(&scene(Compare::Off)).unwrap();
-    assert!(first.is_new && !canvas.draw(&scene(Compare::Off)).unwrap().is_new);
-    let raised = raised();
-    let second = canvas.draw(&raised).unwrap();
-    assert!(second.is_new);
-    assert_eq!(first.pictures, second.pictures, "in the same texture");
-    assert!(matches!(
-        canvas.draw(&scene(Compare::Split)).unwrap().pictures,
-        Pictures::Two([left, right]) if left != right
-    ));
-    assert!(matches!(
-        canvas.draw(&scene(Compare::Difference)).unwrap().pictures,
-        Pictures::One(texture) if Pictures::One(texture) != first.pictures
-    ));
+    assert!(canvas.draw(&scene(Compare::Off)).unwrap());
+    let first = canvas.pictures();
+    assert!(!canvas.draw(&scene(Compare::Off)).unwrap());
+    assert!(canvas.draw(&raised()).unwrap());
+    assert_eq!(first, canvas.pictures(), "in the same texture");
+    canvas.draw(&scene(Compare::Split)).unwrap();
+    assert!(matches!(canvas.pictures()[..], [left, right] if left != right));
+    canvas.draw(&scene(Compare::Difference)).unwrap();
+    assert!(matches!(canvas.pictures()[..], [texture] if texture != first[0]));
 }
 
 #[test]
@@ -131,7 +126,7 @@ fn a_picture_shows_what_was_shown_when_it_was_asked_for() {
     canvas.draw(&other).unwrap();
     assert_ne!(map(&canvas), before, "something else is shown by now");
     let begun = Instant::now();
-    while !snapshot.has_arrived(canvas.gpu()).unwrap() {
+    while !snapshot.pixels.has_arrived(canvas.gpu()).unwrap() {
         assert!(begun.elapsed() < Duration::from_mins(1));
     }
     assert_eq!(snapshot.into_image(canvas.gpu()).unwrap(), before);
@@ -140,8 +135,7 @@ fn a_picture_shows_what_was_shown_when_it_was_asked_for() {
 /// A picture of one colour.
 fn plain(gpu: &Gpu, color: wgpu::Color) -> Picture {
     let picture = Picture::new(gpu, SIZE_PX, 1).unwrap();
-    let mut encoder =
-        gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(color), store: wgpu::StoreOp::Store };
     drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -152,7 +146,7 @@ fn plain(gpu: &Gpu, color: wgpu::Color) -> Picture {
         })],
         ..Default::default()
     }));
-    gpu.queue().submit([encoder.finish()]);
+    gpu.queue.submit([encoder.finish()]);
     picture
 }
 
@@ -163,7 +157,7 @@ fn a_split_picture_has_both_sides() {
     let [red, blue] = [wgpu::Color::RED, wgpu::Color::BLUE].map(|color| plain(gpu, color));
     let [red, blue] = [red, blue].map(|picture| picture.begin_read(gpu));
     let both = PixelReading::new(vec![(red, 0..16), (blue, 16..SIZE_PX[0])], SIZE_PX);
-    let both = Snapshot::of_map(both).into_image(gpu).unwrap();
+    let both = Snapshot { pixels: both, has_blue_first: false }.into_image(gpu).unwrap();
     for (x, y, pixel) in both.enumerate_pixels() {
         let expected = if x < 16 { [255, 0, 0, 255] } else { [0, 0, 255, 255] };
         assert_eq!(pixel.0, expected, "{x}, {y}");
@@ -182,7 +176,7 @@ fn in_a_hurry_fewer_pixels_are_drawn() {
     canvas.draw(&coarse).unwrap();
     assert!(!canvas.is_full());
     assert_eq!(map(&canvas).dimensions(), (32, 24));
-    assert!(canvas.draw(&full).unwrap().is_new && canvas.is_full());
+    assert!(canvas.draw(&full).unwrap() && canvas.is_full());
 }
 
 #[test]
@@ -190,7 +184,7 @@ fn what_was_lost_is_drawn_again_by_another_canvas() {
     let Some(mut first) = canvas() else { return };
     first.draw(&scene(Compare::Off)).unwrap();
     let before = map(&first);
-    first.gpu().device().destroy();
+    first.gpu().device.destroy();
     // Whether or not drawing on tells of it, it must not end the program.
     let _ = first.draw(&raised());
     let _ = first.map.times();

@@ -26,8 +26,7 @@ mod window_content;
 mod window_request;
 
 pub use corniche_live::{
-    ClockS, CommandOf, DrawnLine, NamedStyle, NotSaved, Reload, SaveDrawing, ShownView, Visibility,
-    controls::Inertia,
+    ClockS, CommandOf, DrawnLine, MapSettings, NamedStyle, NotSaved, Reload, SaveDrawing, ShownView,
 };
 pub use error::{Closed, End, WindowError};
 pub use platform::{Watched, run, watch};

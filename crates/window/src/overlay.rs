@@ -14,7 +14,7 @@ mod scale_bar;
 use corniche_live::{Compare, MapSettings};
 use egui::{Rect, Ui};
 
-pub(crate) use self::palette::OverlayAnswer;
+pub(crate) use self::palette::Answer;
 use self::{
     compass::{compass, compass_place, panel_button},
     divider::{divider, handles},
@@ -34,33 +34,32 @@ pub(crate) fn overlay(
     rect: Rect,
     settings: &mut MapSettings,
     content: &WindowContent<'_>,
-) -> OverlayAnswer {
-    let mut answer = OverlayAnswer::default();
+    answer: &mut Answer,
+) {
     // Nothing is painted over the panel or the status line, however small the window is.
     ui.set_clip_rect(rect);
     handles(ui, &content.drawing);
     let mut room = rect;
     room.max.y = scale_bar(ui, rect, credits_place(ui, rect, content).as_ref(), content);
     if settings.is_help_open {
-        help(ui, room, &mut answer);
+        help(ui, room, answer);
     } else if room.width() > SMALL && room.height() > SMALL {
         let place = compass_place(rect);
         if settings.compare == Compare::Split {
-            divider(ui, rect, place, settings, &mut answer);
+            divider(ui, rect, place, settings, answer);
             room.min.y += LABEL_HEIGHT;
         }
-        let [left, below] = compass(ui, place, content, &mut answer);
+        let [left, below] = compass(ui, place, content, answer);
         if !settings.is_panel_open {
-            panel_button(ui, room, below, &mut answer);
+            panel_button(ui, room, below, answer);
         }
         room.max.x = left;
         if settings.compare == Compare::Difference {
             room.min.y = legend(ui, room);
         }
         room.min.y = no_data(ui, room, content);
-        notices(ui, room, content, &mut answer);
+        notices(ui, room, content, answer);
     }
     // The credits are painted last, so that nothing covers them.
     credits(ui, rect, content);
-    answer
 }

@@ -6,10 +6,11 @@ mod performance;
 mod status_line;
 
 use corniche_live::{Command, MapSettings};
-use egui::{Color32, Rect, Ui, pos2};
+use egui::{Color32, Rect, TextureId, Ui, pos2};
 
-use self::status_line::{PanelRoom, status_line};
-use crate::{canvas::Pictures, overlay, window_content::WindowContent};
+use self::status_line::status_line;
+pub(crate) use crate::overlay::Answer;
+use crate::{overlay, window_content::WindowContent};
 
 /// Width of the panel, points.
 const WIDTH: f32 = 300.0;
@@ -17,15 +18,6 @@ const WIDTH: f32 = 300.0;
 const LEAST_MAP_WIDTH: f32 = 140.0;
 /// A window narrower than this opens with the panel hidden.
 const LEAST_WIDTH_WITH_PANEL: f32 = 600.0;
-
-/// What a person did in the panel and on the overlay in a frame.
-#[derive(Default)]
-pub(crate) struct Answer {
-    /// What the person asked for.
-    pub(crate) commands: Vec<Command>,
-    /// The parts of the window where the mouse does not act on the map.
-    pub(crate) occupied: Vec<Rect>,
-}
 
 /// Sets up the toolkit: dark colours, and no animations, so that nothing is drawn again without a reason.
 pub(crate) fn set_up(ui: &egui::Context) {
@@ -56,24 +48,21 @@ pub(crate) fn show(
     ui: &mut Ui,
     settings: &mut MapSettings,
     content: &WindowContent<'_>,
-    pictures: Pictures,
+    pictures: &[TextureId],
 ) -> Answer {
     let mut answer = Answer::default();
     let whole = ui.ctx().viewport_rect();
     paint(ui, whole, settings.divider_share, pictures);
-    let room = if settings.is_panel_open && width(whole.width()) == 0.0 {
-        PanelRoom::TooLittle
-    } else {
-        PanelRoom::Enough
-    };
+    let has_room = width(whole.width()) > 0.0;
+    let finds_none = settings.is_panel_open && !has_room;
     let status = egui::Panel::bottom("status")
         .resizable(false)
         .show_separator_line(false)
         .exact_size(status_line::HEIGHT)
         .frame(frame(ui).inner_margin(egui::Margin::symmetric(8, 3)))
-        .show(ui, |ui| status_line(ui, settings, content, room));
+        .show(ui, |ui| status_line(ui, settings, content, finds_none));
     answer.occupied.push(status.response.rect);
-    if settings.is_panel_open && room == PanelRoom::Enough {
+    if settings.is_panel_open && has_room {
         let panel = egui::Panel::right("panel")
             .resizable(false)
             .exact_size(WIDTH)
@@ -82,9 +71,7 @@ pub(crate) fn show(
         answer.occupied.push(panel.response.rect);
     }
     let free = ui.available_rect_before_wrap();
-    let overlay = overlay::overlay(ui, free, settings, content);
-    answer.commands.extend(overlay.commands);
-    answer.occupied.extend(overlay.occupied);
+    overlay::overlay(ui, free, settings, content, &mut answer);
     answer
 }
 
@@ -132,7 +119,7 @@ fn section(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
 }
 
 /// Paints the map. It fills the whole window, also behind the panel, so that it does not move when the panel opens.
-fn paint(ui: &Ui, whole: Rect, divider_share: f32, pictures: Pictures) {
+fn paint(ui: &Ui, whole: Rect, divider_share: f32, pictures: &[TextureId]) {
     let painter = ui.painter();
     let image = |texture, from: f32, to: f32| {
         let part = Rect::from_min_max(
@@ -143,11 +130,11 @@ fn paint(ui: &Ui, whole: Rect, divider_share: f32, pictures: Pictures) {
         painter.image(texture, part, uv, Color32::WHITE);
     };
     match pictures {
-        Pictures::One(texture) => image(texture, 0.0, 1.0),
-        Pictures::Two([left, right]) => {
-            image(left, 0.0, divider_share);
-            image(right, divider_share, 1.0);
+        [left, right] => {
+            image(*left, 0.0, divider_share);
+            image(*right, divider_share, 1.0);
         }
+        all => all.iter().for_each(|texture| image(*texture, 0.0, 1.0)),
     }
 }
 

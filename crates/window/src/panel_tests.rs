@@ -1,7 +1,7 @@
 //! No text of the window is cut off or hidden, however small the window is.
 
 use corniche_live::{
-    Compare, DrawingContent, FrameTimes, GroundPoint, Notice, Shot, Visibility, controls::Mode,
+    Compare, DrawingContent, FrameTimes, GroundPoint, Notice, Shot, controls::Mode,
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{
@@ -78,10 +78,8 @@ impl Told {
             mode: Mode::Map,
             style_names: &self.styles,
             photo: None,
-            has: crate::window_content::Has {
-                areas: self.has_areas,
-                boundaries: !self.boundary_lines.is_empty(),
-            },
+            has_areas: self.has_areas,
+            has_boundaries: !self.boundary_lines.is_empty(),
             overlays: &[],
             drawing: DrawingContent::default(),
             overlay_colors: Vec::new(),
@@ -122,7 +120,7 @@ fn lay_out(
         };
         let mut commands = Vec::new();
         let mut output = ctx.run_ui(input, |ui| {
-            answer = show(ui, settings, content, Pictures::One(TextureId::User(0)));
+            answer = show(ui, settings, content, &[TextureId::User(0)]);
             commands.append(&mut answer.commands);
         });
         answer.commands = commands;
@@ -418,12 +416,12 @@ fn boundaries_are_listed_while_they_are_shown() {
     let long = "boundary, level 6, boundary, level 7, boundary, level 8";
     let boundary_lines = vec![line("country border"), line(long)];
     let told = Told { boundary_lines, ..Told::new() };
-    for boundaries in [Visibility::Shown, Visibility::Hidden] {
+    for boundaries in [true, false] {
         let mut settings = MapSettings { boundaries, ..usual() };
         let (texts, _) = lay_out([1280.0, 1200.0], &mut settings, &told.content(), &[&[], &[]]);
         for label in ["country border", long] {
             let found = texts.iter().find(|(words, ..)| words == label);
-            assert_eq!(found.is_some(), boundaries == Visibility::Shown, "{label}");
+            assert_eq!(found.is_some(), boundaries, "{label}");
             let fits = found.is_none_or(|(_, place, clip)| clip.contains_rect(*place));
             assert!(fits, "{found:?}");
         }

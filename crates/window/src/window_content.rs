@@ -9,16 +9,8 @@ use corniche_viewer::{
     gpu::PassTimes,
 };
 
-/// What a package may have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Has {
-    /// Water, forest and so on.
-    pub(crate) areas: bool,
-    /// Whether the package has boundaries.
-    pub(crate) boundaries: bool,
-}
-
 /// Everything that the panel and the overlay show, apart from the settings.
+#[expect(clippy::struct_excessive_bools, reason = "facts, independent of each other")]
 pub(crate) struct WindowContent<'a> {
     /// Name of the graphics adapter.
     pub(crate) adapter: &'a str,
@@ -40,8 +32,10 @@ pub(crate) struct WindowContent<'a> {
     pub(crate) style_names: &'a [String],
     /// How strongly the style that is shown lets photos be seen; `None` in a package without photos.
     pub(crate) photo: Option<f32>,
-    /// What the package has beside ground, roads and photos.
-    pub(crate) has: Has,
+    /// Whether the package has water, forest and so on.
+    pub(crate) has_areas: bool,
+    /// Whether it has boundaries.
+    pub(crate) has_boundaries: bool,
     /// Names of the files of lines.
     pub(crate) overlays: &'a [String],
     /// Colours of their lines.

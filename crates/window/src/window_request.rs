@@ -3,12 +3,12 @@
 use std::{io, path::PathBuf};
 
 use corniche_live::{
-    CommandOf, DrawnLine, MAX_PITCH_DEG, NamedStyle, Reload, SaveDrawing, Visibility,
+    CommandOf, DrawnLine, MAX_PITCH_DEG, MapSettings, NamedStyle, Reload, SaveDrawing,
 };
 use corniche_roads::FunctionalRoadClass;
-use corniche_viewer::{CameraRequest, RoadMethod, RoadOptions, range, stream::StreamBudget};
+use corniche_viewer::{CameraRequest, RoadMethod, range, stream::StreamBudget};
 
-use crate::{Inertia, WindowError};
+use crate::WindowError;
 
 /// Opens the trace; called once, when the window is open. Each write must reach the file at once, for a script may read it
 /// meanwhile.
@@ -22,8 +22,8 @@ pub struct WindowRequest {
     pub size_px: [u32; 2],
     /// Where to look from at first.
     pub camera: CameraRequest,
-    /// How roads are drawn at first.
-    pub roads: RoadOptions,
+    /// What else a person can change, as it is at first; samples and the panel are set when it opens.
+    pub settings: MapSettings,
     /// The method by which roads are drawn at first where the processor draws; `None`: by the same as elsewhere.
     pub software_method: Option<RoadMethod>,
     /// What people call the roads of each class, 0 first.
@@ -34,12 +34,6 @@ pub struct WindowRequest {
     pub styles: Vec<NamedStyle>,
     /// Tells whether the first style has changed; `None` if it cannot change.
     pub reload: Option<Reload>,
-    /// How strongly photos are seen at first, 0 to 1; `None`: as the style says.
-    pub photo: Option<f32>,
-    /// Whether areas are drawn at first, as the style says, or not at all.
-    pub areas: Visibility,
-    /// Whether boundaries are drawn at first, as the style says, or not at all.
-    pub boundaries: Visibility,
     /// What the files of lines are called that the package's tiles carry, in the order of the style's
     /// [`overlays`](corniche_styles::Style::overlays).
     pub overlays: Vec<String>,
@@ -47,18 +41,12 @@ pub struct WindowRequest {
     pub drawn_lines: Vec<DrawnLine>,
     /// Saves them.
     pub save_drawing: SaveDrawing,
-    /// A tile is refined while its error looks larger than this, pixels.
-    pub screen_space_error_px: f64,
-    /// A tile is refined while one of its cells looks larger than this, pixels.
-    pub cell_px: f64,
-    /// Factor on heights; 1 is true.
-    pub exaggeration: f64,
     /// Samples per pixel along each side; without it 2, and 1 where the processor draws.
     pub samples_per_side: Option<u32>,
     /// What may be loaded and kept.
     pub budget: StreamBudget,
-    /// Whether movements slow down gradually or end at once.
-    pub inertia: Inertia,
+    /// Whether movements slow down gradually; else they end at once.
+    pub has_inertia: bool,
     /// Where pictures and flights are saved; no existing file is replaced.
     pub folder: PathBuf,
     /// A diagnostic: opens what a line for each frame is written to.
@@ -76,7 +64,8 @@ impl WindowRequest {
         if self.styles.is_empty() {
             return Err(WindowError::NoStyle);
         }
-        range::check_ground(self.screen_space_error_px, self.cell_px, self.exaggeration)?;
+        let MapSettings { screen_space_error_px, cell_px, exaggeration, .. } = self.settings;
+        range::check_ground(screen_space_error_px, cell_px, exaggeration)?;
         if let Some(samples) = self.samples_per_side {
             range::check_supersampling(samples)?;
         }

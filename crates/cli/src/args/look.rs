@@ -6,7 +6,6 @@ use corniche_styles::Style;
 use corniche_viewer::{
     CapTest, Caps, ClassSet, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,
 };
-use corniche_window::Visibility;
 
 use super::{
     overlay::{self, OverlayArg},
@@ -75,8 +74,7 @@ impl Roads {
 }
 
 /// Whether areas, or boundaries, are drawn.
-const ON_OFF: Words<Visibility, 2> =
-    [("on", "Those that the style draws", Visibility::Shown), ("off", "None", Visibility::Hidden)];
+const ON_OFF: Words<bool, 2> = [("on", "Those that the style draws", true), ("off", "None", false)];
 
 /// How roads begin, bend and end.
 const CAPS: Words<Caps, 2> = [
@@ -134,10 +132,10 @@ pub(crate) struct LookArgs {
     pub(crate) photo: Option<f32>,
     /// Areas (water, forest …), where the package has some: as the style draws them, or off
     #[arg(long, value_parser = one_of(ON_OFF), default_value = "on")]
-    pub(crate) areas: Visibility,
+    pub(crate) areas: bool,
     /// Boundaries, where the package has some: as the style draws them, or off
     #[arg(long, value_parser = one_of(ON_OFF), default_value = "on")]
-    pub(crate) boundaries: Visibility,
+    pub(crate) boundaries: bool,
     /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; give it again for another file
     ///
     /// Behind the file's name: ,color=COLOUR (#C21E8A or tomato) ,width=PIXELS ,opacity=SHARE ,dash=DASH/GAP ,pattern=dots/PX (or beads, arrows) in pixels.
@@ -175,12 +173,12 @@ impl LookArgs {
     /// A style, with photos as strong as `--photo` says, and with areas unless `--areas` says otherwise, and with the lines of `--overlay`.
     pub(crate) fn styled(&self, style: Style) -> Style {
         let style = match self.areas {
-            Visibility::Shown => style,
-            Visibility::Hidden => style.without_areas(),
+            true => style,
+            false => style.without_areas(),
         };
         let style = match self.boundaries {
-            Visibility::Shown => style,
-            Visibility::Hidden => style.without_boundaries(),
+            true => style,
+            false => style.without_boundaries(),
         };
         let style = Style { photo: self.photo.unwrap_or(style.photo), ..style };
         overlay::styled(&self.overlay, style)

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use corniche_presets::{Words, one_of};
-use corniche_window::Inertia;
 
 use super::{
     camera::CameraArgs,
@@ -15,10 +14,8 @@ use super::{
 };
 
 /// How movements of the camera end.
-const MOTIONS: Words<Inertia, 2> = [
-    ("soft", "They slow down smoothly", Inertia::On),
-    ("prompt", "They end at once", Inertia::Off),
-];
+const MOTIONS: Words<bool, 2> =
+    [("soft", "They slow down smoothly", true), ("prompt", "They end at once", false)];
 
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
@@ -43,7 +40,7 @@ pub(crate) struct ViewArgs {
     pub(crate) gpu: GpuArgs,
     /// How movements end
     #[arg(long, value_parser = one_of(MOTIONS), default_value = "soft")]
-    pub(crate) motion: Inertia,
+    pub(crate) motion: bool,
     /// Lines to change with the mouse (key L): a GeoJSON file, made if it is not there. They are saved there with Ctrl S and at the end
     /// [default: a new file in --folder]
     #[arg(long, value_name = "GEOJSON")]

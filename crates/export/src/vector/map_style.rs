@@ -149,7 +149,7 @@ impl SymbolPart {
 }
 
 fn line(color: Rgb, width_px: f32, dash: &Dash) -> Vec<(&'static str, String)> {
-    let is_dashed = dash.least_px() > 0.0 && dash.widths().is_none();
+    let is_dashed = dash.least_px > 0.0 && dash.widths.is_none();
     let cap = if is_dashed { "flat" } else { "round" };
     let mut properties = vec![
         ("line_color", rgba(color)),
@@ -160,9 +160,9 @@ fn line(color: Rgb, width_px: f32, dash: &Dash) -> Vec<(&'static str, String)> {
         ("joinstyle", "round".into()),
     ];
     if is_dashed {
-        let [first, gap, second] = dash.ends();
+        let [first, gap, second] = dash.ends;
         let lengths = [first, gap - first, second - gap, 1.0 - second];
-        let lengths = lengths.map(|share| millimetres(share * dash.least_px()));
+        let lengths = lengths.map(|share| millimetres(share * dash.least_px));
         properties.extend([
             ("use_custom_dash", "1".into()),
             ("customdash", lengths.join(";")),

@@ -16,7 +16,7 @@ fn from_above_the_grabbed_ground_stays_under_the_cursor() {
     let middle =
         navigator.view().ground_at(DVec2::new(400.0, 300.0), SIZE_PX, 4e4, &HILLY).unwrap();
     navigator.handle(&Input::ToggleAbove, 0.0, &HILLY);
-    assert!(navigator.camera().projection() != Projection::Perspective);
+    assert!(navigator.camera().projection != Projection::Perspective);
     let at = seen_at(&navigator, [middle.x, middle.y]);
     assert!(at.distance(DVec2::new(400.0, 300.0)) < 1e-6, "{at}");
     let before_px = navigator.camera().pixel_at_depth_m(0.0);
@@ -36,7 +36,7 @@ fn from_above_the_grabbed_ground_stays_under_the_cursor() {
     // The wheel zooms at the cursor, by whole levels for three notches.
     let at_px = DVec2::new(600.0, 150.0);
     let under = navigator.view().ground_at(at_px, SIZE_PX, 4e4, &HILLY).unwrap();
-    navigator.set_inertia(Inertia::Off);
+    navigator.has_inertia = false;
     navigator.handle(&Input::Wheel { steps: 3.0, at_px }, 6.0, &HILLY);
     navigator.advance(6.1, &HILLY);
     assert!(seen_at(&navigator, [under.x, under.y]).distance(at_px) < 1e-6);
@@ -56,7 +56,7 @@ fn from_above_the_grabbed_ground_stays_under_the_cursor() {
 
     // Back in perspective the same place is in the middle, about as large.
     navigator.handle(&Input::ToggleAbove, 10.0, &HILLY);
-    assert_eq!(navigator.camera().projection(), Projection::Perspective);
+    assert_eq!(navigator.camera().projection, Projection::Perspective);
     assert!(seen_at(&navigator, [middle.x, middle.y]).distance(DVec2::new(400.0, 300.0)) < 1.0);
     let (_, depth_m) = navigator.camera().project(middle).unwrap();
     let seen_px = navigator.camera().pixel_at_depth_m(depth_m);

@@ -13,7 +13,7 @@ fn finds_data(navigator: &Navigator) -> bool {
                 160.0 + 480.0 * f64::from(k) / 79.0,
                 120.0 + 360.0 * f64::from(l) / 79.0,
             );
-            let at = view.on_plane(at_px, camera.size_px(), 400.0, 1e6);
+            let at = view.on_plane(at_px, camera.size_px, 400.0, 1e6);
             at.is_some_and(|at| {
                 (-500.0..=10_500.0).contains(&at.x) && (-500.0..=10_500.0).contains(&at.y)
             })
@@ -24,7 +24,7 @@ fn finds_data(navigator: &Navigator) -> bool {
 #[test]
 fn no_movement_of_the_map_loses_the_data() {
     let mut navigator = looking(30.0, 60.0, 8000.0);
-    navigator.set_inertia(Inertia::Off);
+    navigator.has_inertia = false;
     let keys = [Key::Left, Key::Up, Key::Right, Key::Down, Key::ZoomOut, Key::ZoomIn];
     let mut now_s = 0.0;
     let mut blocked = 0;

@@ -6,7 +6,6 @@ use glam::{DVec2, DVec3};
 
 use super::{
     input::Button,
-    options::Inertia,
     view::{View, half_turn},
 };
 
@@ -138,11 +137,8 @@ impl Travel {
     }
 
     /// The view at a time, and whether the way is at its end.
-    pub(crate) fn view(&self, now_s: f64, inertia: Inertia) -> (View, bool) {
-        let t = match inertia {
-            Inertia::On => ((now_s - self.begun_s) / TRAVEL_S).clamp(0.0, 1.0),
-            Inertia::Off => 1.0,
-        };
+    pub(crate) fn view(&self, now_s: f64, is_gradual: bool) -> (View, bool) {
+        let t = if is_gradual { ((now_s - self.begun_s) / TRAVEL_S).clamp(0.0, 1.0) } else { 1.0 };
         if t >= 1.0 {
             return (self.to, true);
         }

@@ -9,7 +9,7 @@ use super::{
     flying::Flying,
     input::{Button, Input, Key, KeyState, Modifiers},
     movement::{Gesture, Pending, Trail, Travel},
-    options::{Inertia, Limits, Mode},
+    options::{Limits, Mode},
     view::{KnownGround, View, half_turn},
 };
 
@@ -42,8 +42,11 @@ const MAX_STEP_S: f64 = 0.5;
 pub struct Navigator {
     seen: BoundedView,
     pixels_per_point: f64,
-    mode: Mode,
-    inertia: Inertia,
+    /// Map mode or fly mode.
+    pub mode: Mode,
+    /// Whether movements slow down gradually, and after a fast drag the map glides on. Else they end at once; for scripts, and for people
+    /// whom movement disturbs.
+    pub has_inertia: bool,
     cursor_px: DVec2,
     gesture: Option<Gesture>,
     fingers: Option<Fingers>,
@@ -65,12 +68,12 @@ pub struct Navigator {
 impl Navigator {
     /// Begins with a view, to which [`Input::Reset`] returns. No side of the picture may be 0.
     #[must_use]
-    pub fn new(home: View, limits: Limits, size_px: [u32; 2], inertia: Inertia) -> Self {
+    pub fn new(home: View, limits: Limits, size_px: [u32; 2], has_inertia: bool) -> Self {
         Self {
             seen: BoundedView { view: home, home, limits, size_px },
             pixels_per_point: 1.0,
             mode: Mode::Map,
-            inertia,
+            has_inertia,
             cursor_px: DVec2::ZERO,
             gesture: None,
             fingers: None,
@@ -96,12 +99,6 @@ impl Navigator {
     #[must_use]
     pub fn camera(&self) -> Camera {
         self.seen.camera()
-    }
-
-    /// Map mode or fly mode.
-    #[must_use]
-    pub fn mode(&self) -> Mode {
-        self.mode
     }
 
     /// The picture has another size now; no side may be 0.
@@ -203,7 +200,7 @@ impl Navigator {
         self.now_s = now_s;
         self.advanced_s = now_s;
         if let Some(travel) = self.travel {
-            let (view, is_done) = travel.view(now_s, self.inertia);
+            let (view, is_done) = travel.view(now_s, self.has_inertia);
             self.seen.view = view;
             if is_done {
                 self.travel = None;
@@ -220,10 +217,7 @@ impl Navigator {
             }
         }
         if self.pending.is_some() {
-            let share = match self.inertia {
-                Inertia::On => 1.0 - libm::exp(-dt_s / STEP_DECAY_S),
-                Inertia::Off => 1.0,
-            };
+            let share = if self.has_inertia { 1.0 - libm::exp(-dt_s / STEP_DECAY_S) } else { 1.0 };
             self.do_pending(share, ground);
         }
         self.settle(ground);
@@ -255,11 +249,6 @@ impl Navigator {
             self.glide_m_per_s = DVec3::ZERO;
             self.pending = Pending::default();
         }
-    }
-
-    /// From now on movements slow down gradually, or end at once.
-    pub fn set_inertia(&mut self, inertia: Inertia) {
-        self.inertia = inertia;
     }
 
     /// Takes another view at once, and stops all movements.
@@ -394,7 +383,7 @@ impl Navigator {
         let is_pan = matches!(self.gesture, Some(Gesture::Pan { .. }));
         if let Some(speed) = self.trail.speed_m_per_s(now_s, self.advanced_s)
             && is_pan
-            && self.inertia == Inertia::On
+            && self.has_inertia
             && speed.length() > GLIDE_MIN_PX_PER_S * self.seen.pixel_m()
         {
             self.glide_m_per_s = speed;

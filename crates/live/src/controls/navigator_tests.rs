@@ -69,7 +69,7 @@ fn looking(heading_deg: f64, pitch_deg: f64, distance_m: f64) -> Navigator {
         clearance_m: 2.0,
         max_pitch_deg: 85.0,
     };
-    Navigator::new(View::of(&camera, orientation), limits, SIZE_PX, Inertia::On)
+    Navigator::new(View::of(&camera, orientation), limits, SIZE_PX, true)
 }
 
 fn press(button: Button, x: f64, y: f64) -> Input {
@@ -342,7 +342,7 @@ fn control_and_the_left_button_turn_as_the_right_one_does() {
 fn a_map_thrown_glides_on_and_one_put_down_stays() {
     let drag = |inertia, pause_s: f64| {
         let mut navigator = looking(0.0, 30.0, 3000.0);
-        navigator.set_inertia(inertia);
+        navigator.has_inertia = inertia;
         navigator.handle(&press(Button::Left, 400.0, 300.0), 0.0, &FLAT);
         for step in 1..=10 {
             let x = 400.0 + 10.0 * f64::from(step);
@@ -354,17 +354,17 @@ fn a_map_thrown_glides_on_and_one_put_down_stays() {
         rest(&mut navigator, released_s, &FLAT);
         navigator.view().eye_in_world.x - before.x
     };
-    let glided_m = drag(Inertia::On, 0.0);
+    let glided_m = drag(true, 0.0);
     assert!(glided_m < -50.0, "the map goes on to the right, the eye to the left: {glided_m}");
-    assert!(drag(Inertia::On, 0.3).abs() < 1e-9, "the hand rested");
-    assert!(drag(Inertia::Off, 0.0).abs() < 1e-9, "nothing is to glide");
+    assert!(drag(true, 0.3).abs() < 1e-9, "the hand rested");
+    assert!(drag(false, 0.0).abs() < 1e-9, "nothing is to glide");
 }
 
 #[test]
 fn a_map_is_thrown_where_frames_are_slow_too() {
     let drag = |moves: &[(f64, f64)]| {
         let mut navigator = looking(0.0, 30.0, 3000.0);
-        navigator.set_inertia(Inertia::On);
+        navigator.has_inertia = true;
         navigator.handle(&press(Button::Left, 400.0, 300.0), 0.0, &FLAT);
         let mut last_s = 0.0;
         for (now_s, x) in moves {
@@ -471,7 +471,7 @@ fn in_fly_mode_the_eye_moves_along_its_view_while_a_key_is_held() {
     let mut navigator = looking(90.0, 90.0, 3000.0);
     navigator.jump_to(View { eye_in_world: DVec3::new(4000.0, 5000.0, 900.0), ..navigator.view() });
     navigator.handle(&Input::ToggleFly, 0.0, &FLAT);
-    assert_eq!(navigator.mode(), Mode::Fly);
+    assert_eq!(navigator.mode, Mode::Fly);
     let start = navigator.view().eye_in_world;
     navigator.handle(&key(Key::Ahead, KeyState::Pressed, false), 0.0, &FLAT);
     for step in 1..=10 {

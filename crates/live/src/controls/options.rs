@@ -29,12 +29,3 @@ pub enum Mode {
     /// It turns the eye, as one looks around in flight.
     Fly,
 }
-
-/// How movements end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Inertia {
-    /// They slow down gradually, and after a fast drag the map glides on.
-    On,
-    /// They end at once; for scripts, and for people whom movement disturbs.
-    Off,
-}

@@ -38,9 +38,9 @@ impl View {
     #[must_use]
     pub fn of(camera: &Camera, orientation: Orientation) -> Self {
         Self {
-            eye_in_world: camera.eye_in_world(),
+            eye_in_world: camera.eye_in_world,
             orientation,
-            focus_m: camera.focus_m(),
+            focus_m: camera.focus_m,
             from_above: None,
         }
     }
@@ -89,7 +89,7 @@ impl View {
     #[must_use]
     pub fn world_from_view(&self) -> DMat3 {
         // The axes depend neither on the position nor on the size of the picture.
-        Camera::look_at(DVec3::ZERO, 1.0, self.orientation, [1, 1]).world_from_view()
+        Camera::look_at(DVec3::ZERO, 1.0, self.orientation, [1, 1]).world_from_view
     }
 
     /// The ground at a pixel. Where there is none, the plane at the ground's base height, if that is no farther away than

@@ -39,12 +39,12 @@ type Lines = Vec<Arc<Line>>;
 /// All lines, with what they were before each change.
 #[derive(Debug, Default)]
 pub(crate) struct Document {
-    lines: Lines,
+    pub(crate) lines: Lines,
     undone: Vec<Lines>,
     done: Vec<Lines>,
     next_id: u64,
     /// Changes since the beginning, those that were taken back included.
-    revision: u64,
+    pub(crate) revision: u64,
     /// The lines as they were saved last.
     saved: Lines,
 }
@@ -61,11 +61,6 @@ impl Document {
         document
     }
 
-    /// All lines in their order.
-    pub(crate) fn lines(&self) -> &[Arc<Line>] {
-        &self.lines
-    }
-
     /// All points: their lines, their places in them, and themselves.
     pub(crate) fn points(&self) -> impl Iterator<Item = (u64, usize, &DrawnPoint)> {
         self.lines.iter().flat_map(|line| {
@@ -76,11 +71,6 @@ impl Document {
     /// A line by its id.
     pub(crate) fn line(&self, id: u64) -> Option<&Arc<Line>> {
         self.lines.iter().find(|line| line.id == id)
-    }
-
-    /// Grows with every change.
-    pub(crate) fn revision(&self) -> u64 {
-        self.revision
     }
 
     /// Whether there is something that is not saved.

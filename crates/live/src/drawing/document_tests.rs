@@ -10,7 +10,7 @@ fn point(x: f64) -> DrawnPoint {
 
 fn places(document: &Document) -> Vec<Vec<f64>> {
     let of = |line: &Arc<Line>| line.points.iter().map(|point| point.lon_lat_deg[0]).collect();
-    document.lines().iter().map(of).collect()
+    document.lines.iter().map(of).collect()
 }
 
 #[test]
@@ -28,13 +28,13 @@ fn points_are_added_moved_and_removed() {
     document.remove_point(id, 0);
     assert_eq!(places(&document), [vec![1.0, 2.0]], "a line without points is gone");
     assert!(!document.is_changed(), "the lines are those that were loaded");
-    let loaded = document.lines()[0].id;
+    let loaded = document.lines[0].id;
     document.shift(loaded, 0, point(0.5));
     assert!(document.is_changed());
     document.note_saved();
     assert!(!document.is_changed());
     document.turn(loaded);
-    assert!(document.is_changed() && document.lines()[0].is_area);
+    assert!(document.is_changed() && document.lines[0].is_area);
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn what_was_taken_back_is_not_to_be_saved() {
 #[test]
 fn a_drag_is_taken_back_at_once() {
     let mut document = Document::of(vec![(None, false, vec![point(1.0), point(2.0)])]);
-    let id = document.lines()[0].id;
+    let id = document.lines[0].id;
     document.shift(id, 0, point(3.0));
     document.shift_on(id, 0, point(4.0));
     document.shift_on(id, 0, point(5.0));
@@ -73,10 +73,10 @@ fn lines_that_are_not_changed_stay_the_same_ones() {
         (None, false, vec![point(1.0)]),
         (None, false, vec![point(2.0), point(3.0)]),
     ]);
-    let first = Arc::clone(&document.lines()[0]);
-    let id = document.lines()[1].id;
+    let first = Arc::clone(&document.lines[0]);
+    let id = document.lines[1].id;
     document.insert(id, 2, point(4.0));
-    assert!(Arc::ptr_eq(&first, &document.lines()[0]));
+    assert!(Arc::ptr_eq(&first, &document.lines[0]));
 }
 
 proptest! {
@@ -86,7 +86,7 @@ proptest! {
         let mut document = Document::default();
         let mut seen = vec![places(&document)];
         for (kind, place, x) in changes {
-            let line = document.lines().get(place % document.lines().len().max(1)).map(|line| line.id);
+            let line = document.lines.get(place % document.lines.len().max(1)).map(|line| line.id);
             match (kind, line) {
                 (0, _) | (_, None) => { document.begin(point(x)); }
                 (1, Some(id)) => document.insert(id, place, point(x)),
@@ -112,7 +112,7 @@ proptest! {
 fn a_closed_line_becomes_an_area_without_its_point_twice() {
     let closed = vec![point(1.0), point(2.0), point(3.0), point(1.0)];
     let mut document = Document::of(vec![(None, false, closed)]);
-    let id = document.lines()[0].id;
+    let id = document.lines[0].id;
     document.turn(id);
     assert_eq!(places(&document), [vec![1.0, 2.0, 3.0]]);
     document.undo();

@@ -102,9 +102,9 @@ impl LaidLines {
 
     /// Simplifies lines for all levels.
     fn prepare(&mut self, document: &Document, frame: &GridFrame) {
-        let ids: BTreeSet<u64> = document.lines().iter().map(|line| line.id).collect();
+        let ids: BTreeSet<u64> = document.lines.iter().map(|line| line.id).collect();
         self.prepared.retain(|id, _| ids.contains(id));
-        for line in document.lines() {
+        for line in &document.lines {
             if self.prepared.get(&line.id).is_some_and(|known| Arc::ptr_eq(&known.line, line)) {
                 continue;
             }
@@ -150,7 +150,7 @@ impl LaidTile {
                 self.surface = TileSurface::of(tile, manifest);
             }
             let outline = match &self.surface {
-                Some(surface) if !near.is_empty() => surface.lay(&near, frame, LineMethods::Both),
+                Some(surface) if !near.is_empty() => surface.lay(&near, LineMethods::Both),
                 _ => Ok(TileLayer::default()),
             };
             let is_too_much = outline.is_err();

@@ -38,7 +38,7 @@ fn an_edit_lays_that_line_alone() {
     let again = laid.update(&document, tiles.iter(), manifest);
     assert_eq!((again.laid, again.changed.len()), (0, 0), "nothing has changed");
 
-    let id = document.lines()[1].id;
+    let id = document.lines[1].id;
     document.insert(id, 1, at(0.4, 0.5));
     let edited = laid.update(&document, tiles.iter(), manifest);
     assert!(edited.laid > 0 && edited.laid <= tiles.len(), "{} laid", edited.laid);
@@ -82,7 +82,7 @@ fn an_area_has_an_outline_that_is_closed_and_volumes_inside() {
     let before = outlines.segments.all().len();
 
     // As a line the second one has no inside, and lacks the side that closed it.
-    let id = document.lines()[1].id;
+    let id = document.lines[1].id;
     document.turn(id);
     let [(_, outlines, areas)] = &laid.update(&document, tiles.iter(), manifest).changed[..] else {
         panic!("one tile");
@@ -143,7 +143,7 @@ fn lines_that_take_too_much_work_are_told() {
         (None, false, (0..10_000).map(across).collect()),
         (None, false, vec![at(0.1, 0.9), at(0.9, 0.1)]),
     ]);
-    let long = document.lines()[0].id;
+    let long = document.lines[0].id;
     let mut laid = LaidLines::default();
     let first = laid.update(&document, tile.iter(), manifest);
     assert_eq!((first.laid, &first.not_laid), (1, &BTreeSet::from([long])));

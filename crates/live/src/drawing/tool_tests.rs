@@ -40,7 +40,7 @@ impl Hand {
     }
 
     fn lines(&self) -> Vec<Vec<[f64; 2]>> {
-        let lines = self.document.lines().iter();
+        let lines = self.document.lines.iter();
         lines.map(|line| line.points.iter().map(|point| point.at_m).collect()).collect()
     }
 }

@@ -51,9 +51,9 @@ pub(crate) struct AreaBuffers {
     corners: Buffer,
     triangles: Buffer,
     boxes: Buffer,
-    classes: Vec<ClassVolumes>,
+    pub(crate) classes: Vec<ClassVolumes>,
     /// The box around all of them, as in [`AreaVolumes`].
-    box_in_tile: [[f32; 3]; 2],
+    pub(crate) box_in_tile: [[f32; 3]; 2],
 }
 
 impl AreaBuffers {
@@ -89,16 +89,6 @@ impl AreaBuffers {
             .into_iter()
             .map(Buffer::size)
             .sum()
-    }
-
-    /// The box around all volumes, as in [`AreaVolumes`].
-    pub(crate) fn box_in_tile(&self) -> [[f32; 3]; 2] {
-        self.box_in_tile
-    }
-
-    /// The classes that it has.
-    pub(crate) fn classes(&self) -> &[ClassVolumes] {
-        &self.classes
     }
 
     /// Draws the walls of a class. Pipeline and bind groups are set.

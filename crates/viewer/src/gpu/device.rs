@@ -15,10 +15,14 @@ pub(crate) const TIMESTAMPS: Features =
 
 /// A graphics device.
 pub struct Gpu {
-    adapter: wgpu::Adapter,
-    adapter_name: String,
-    pub(crate) device: wgpu::Device,
-    pub(crate) queue: wgpu::Queue,
+    /// The adapter that the device belongs to; it knows what surfaces can do.
+    pub adapter: wgpu::Adapter,
+    /// Name and backend of the adapter, for reports: "llvmpipe (…) (vulkan)".
+    pub adapter_name: String,
+    /// The device of `wgpu`: makes buffers, textures and pipelines.
+    pub device: wgpu::Device,
+    /// The queue of `wgpu`: takes commands.
+    pub queue: wgpu::Queue,
     faults: Arc<Faults>,
 }
 
@@ -127,12 +131,6 @@ impl Gpu {
         Ok(Self { adapter, adapter_name, device, queue, faults })
     }
 
-    /// Name and backend of the adapter, for reports: "llvmpipe (…) (vulkan)".
-    #[must_use]
-    pub fn adapter_name(&self) -> &str {
-        &self.adapter_name
-    }
-
     /// Whether the adapter is a program on the processor, not a graphics card.
     #[must_use]
     pub fn is_software(&self) -> bool {
@@ -165,24 +163,6 @@ impl Gpu {
         self.device.limits().max_texture_dimension_2d
     }
 
-    /// The adapter that the device belongs to; it knows what surfaces can do.
-    #[must_use]
-    pub fn adapter(&self) -> &wgpu::Adapter {
-        &self.adapter
-    }
-
-    /// The device of `wgpu`: makes buffers, textures and pipelines.
-    #[must_use]
-    pub fn device(&self) -> &wgpu::Device {
-        &self.device
-    }
-
-    /// The queue of `wgpu`: takes commands.
-    #[must_use]
-    pub fn queue(&self) -> &wgpu::Queue {
-        &self.queue
-    }
-
     /// Waits until everything submitted so far is drawn.
     ///
     /// # Errors
@@ -197,6 +177,36 @@ impl Gpu {
     /// Fails when the device had a fault since this was asked last.
     pub(crate) fn check(&self) -> Result<(), ReadBackError> {
         self.take_fault().map_or(Ok(()), |what| Err(ReadBackError::Fault { what }))
+    }
+
+    /// Has recorded commands done.
+    pub fn submit(&self, label: &str, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some(label) };
+        let mut encoder = self.device.create_command_encoder(&descriptor);
+        record(&mut encoder);
+        self.queue.submit([encoder.finish()]);
+    }
+
+    /// A texture with so many sizes, each half as large as the one before.
+    #[must_use]
+    pub fn texture(
+        &self,
+        label: &str,
+        format: wgpu::TextureFormat,
+        [width, height]: [u32; 2],
+        sizes: u32,
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: sizes,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
     }
 
     /// A buffer with these contents, whose length is a multiple of 4.

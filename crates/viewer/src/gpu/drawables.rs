@@ -44,6 +44,7 @@ pub(crate) mod depth_numbers;
 pub(crate) mod difference;
 pub(crate) mod geo_roads;
 pub(crate) mod label_blocks;
+pub(crate) mod label_colors;
 pub(crate) mod level_connectors;
 pub(crate) mod line_layers;
 pub(crate) mod sv_roads;

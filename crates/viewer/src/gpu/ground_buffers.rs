@@ -27,10 +27,10 @@ pub(crate) struct GroundBuffers {
     indices: Buffer,
     index_format: IndexFormat,
     /// The indices of the ground, then those of the skirts, then those of edges of the ground inside the tile.
-    surface: Range<u32>,
-    skirts: Range<u32>,
+    pub(crate) surface: Range<u32>,
+    pub(crate) skirts: Range<u32>,
     /// The skirts and what comes behind them: wherever the ground may end.
-    walls: Range<u32>,
+    pub(crate) walls: Range<u32>,
     /// Three indices for each triangle of the ground, from which the edges are made.
     triangles: Vec<u32>,
     edges: OnceLock<Buffer>,
@@ -67,32 +67,17 @@ impl GroundBuffers {
         buffers.map(Buffer::size).sum()
     }
 
-    /// Two indices for each edge of the ground. The buffer is made when the edges are first drawn, because few pictures
-    /// show them.
-    fn edges(&self, gpu: &Gpu) -> &Buffer {
-        self.edges.get_or_init(|| {
-            gpu.buffer("edges", bytemuck::cast_slice(&edges(&self.triangles)), BufferUsages::INDEX)
-        })
+    /// Draws a part of the triangles. Pipeline and bind groups are set.
+    pub(crate) fn draw_part(&self, pass: &mut RenderPass<'_>, part: &Range<u32>) {
+        self.draw(pass, (&self.indices, self.index_format), part.clone());
     }
 
-    /// Draws the triangles of the ground. Pipeline and bind groups are set.
-    pub(crate) fn draw_surface(&self, pass: &mut RenderPass<'_>) {
-        self.draw(pass, (&self.indices, self.index_format), self.surface.clone());
-    }
-
-    /// Draws the triangles of the skirts. Pipeline and bind groups are set.
-    pub(crate) fn draw_skirts(&self, pass: &mut RenderPass<'_>) {
-        self.draw(pass, (&self.indices, self.index_format), self.skirts.clone());
-    }
-
-    /// Draws the walls: wherever the ground may end. Pipeline and bind groups are set.
-    pub(crate) fn draw_walls(&self, pass: &mut RenderPass<'_>) {
-        self.draw(pass, (&self.indices, self.index_format), self.walls.clone());
-    }
-
-    /// Draws the edges of the ground's triangles as lines. Pipeline and bind groups are set.
+    /// Draws the edges of the ground's triangles as lines. Pipeline and bind groups are set. The buffer with two indices for each edge is made when they
+    /// are first drawn, because few pictures show them.
     pub(crate) fn draw_edges(&self, gpu: &Gpu, pass: &mut RenderPass<'_>) {
-        let edges = self.edges(gpu);
+        let edges = self.edges.get_or_init(|| {
+            gpu.buffer("edges", bytemuck::cast_slice(&edges(&self.triangles)), BufferUsages::INDEX)
+        });
         self.draw(pass, (edges, IndexFormat::Uint32), 0..(edges.size() / 4) as u32);
     }
 

@@ -39,14 +39,6 @@ pub(crate) fn owners(texels: &[u8]) -> impl Iterator<Item = Owner> {
 }
 
 impl Targets {
-    /// The picture: four bytes a pixel (red, green, blue, 255), rows from the top.
-    ///
-    /// # Errors
-    /// When the device is lost or could not draw.
-    pub fn read_picture(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
-        self.picture().read(gpu)
-    }
-
     /// The colours of the terrain pass: four bytes a sample. The last is 255 for ground, 128 for a skirt, 0 where nothing
     /// was drawn.
     ///

@@ -17,24 +17,6 @@ use corniche_styles::RoadBands;
 /// Smaller labels are those of tunnels.
 const SERVICE_LABELS: u8 = 20;
 
-/// The label of a band of a road on the ground; band 0 is the whole road.
-#[must_use]
-pub fn road_label(class: u8, band: u8) -> u8 {
-    (10 - class) * RoadBands::MOST as u8 + band
-}
-
-/// The label of a tunnel, on a dash of its edge or between two.
-#[must_use]
-pub fn tunnel_label(class: u8, is_dash: bool) -> u8 {
-    (9 - class) * 2 + u8::from(is_dash)
-}
-
-/// The label of a service road.
-#[must_use]
-pub fn service_label(class: u8) -> u8 {
-    SERVICE_LABELS + 9 - class
-}
-
 /// Whether a label is that of a tunnel.
 #[must_use]
 pub fn is_tunnel(label: u8) -> bool {

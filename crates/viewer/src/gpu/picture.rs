@@ -15,8 +15,10 @@ pub const MAX_SAMPLES_PER_SIDE: u32 = 4;
 ///
 /// With several samples a pixel there is a second, larger texture: samples are drawn there and averaged into the picture.
 pub struct Picture {
-    size_px: [u32; 2],
-    samples_per_side: u32,
+    /// Width and height in pixels.
+    pub size_px: [u32; 2],
+    /// Samples on each side of a pixel.
+    pub samples_per_side: u32,
     samples: Option<TargetTexture>,
     pixels: TargetTexture,
 }
@@ -33,18 +35,6 @@ impl Picture {
             (samples_per_side > 1).then(|| TargetTexture::new(gpu, "samples", COLOR, sampled_px));
         let pixels = TargetTexture::new(gpu, "picture", COLOR, size_px);
         Ok(Self { size_px, samples_per_side, samples, pixels })
-    }
-
-    /// Width and height in pixels.
-    #[must_use]
-    pub fn size_px(&self) -> [u32; 2] {
-        self.size_px
-    }
-
-    /// Samples on each side of a pixel.
-    #[must_use]
-    pub fn samples_per_side(&self) -> u32 {
-        self.samples_per_side
     }
 
     /// A view of it to bind, for instance in a window.
@@ -75,7 +65,7 @@ impl Picture {
     /// Asks for the bytes of [`Picture::read`] without waiting for them.
     #[must_use]
     pub fn begin_read(&self, gpu: &Gpu) -> ReadBack {
-        ReadBack::begin(gpu, self.pixels.texture())
+        ReadBack::begin(gpu, &self.pixels.texture)
     }
 
     /// The texture that passes draw into: the samples, or the pixels themselves if each has one sample.

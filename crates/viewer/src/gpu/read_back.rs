@@ -178,24 +178,18 @@ fn copy_rows(
     [top, rows]: [u32; 2],
     buffer: &wgpu::Buffer,
 ) {
-    let descriptor = wgpu::CommandEncoderDescriptor { label: Some("read back") };
-    let mut encoder = gpu.device.create_command_encoder(&descriptor);
-    encoder.copy_texture_to_buffer(
-        wgpu::TexelCopyTextureInfo {
-            origin: Origin3d { x: 0, y: top, z: 0 },
-            ..texture.as_image_copy()
-        },
-        TexelCopyBufferInfo {
-            buffer,
-            layout: TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(layout.padded_bytes),
-                rows_per_image: Some(rows),
-            },
-        },
-        wgpu::Extent3d { width: layout.width, height: rows, depth_or_array_layers: 1 },
-    );
-    gpu.queue.submit([encoder.finish()]);
+    let origin = Origin3d { x: 0, y: top, z: 0 };
+    let from = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
+    let in_buffer = TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(layout.padded_bytes),
+        rows_per_image: Some(rows),
+    };
+    let size = wgpu::Extent3d { width: layout.width, height: rows, depth_or_array_layers: 1 };
+    gpu.submit("read back", |encoder| {
+        let into = TexelCopyBufferInfo { buffer, layout: in_buffer };
+        encoder.copy_texture_to_buffer(from, into, size);
+    });
 }
 
 #[cfg(test)]

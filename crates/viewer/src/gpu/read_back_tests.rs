@@ -91,7 +91,7 @@ fn depths_are_read_in_bands() {
     gpu.queue.submit([encoder.finish()]);
     let numbers = depth_numbers(&gpu, &depth);
     for most_bytes in [1 << 20, 3 * 512, 1] {
-        let texels = read_by_bands(&gpu, numbers.texture(), most_bytes).unwrap();
+        let texels = read_by_bands(&gpu, &numbers.texture, most_bytes).unwrap();
         assert_eq!(texels.len(), 70 * 11 * 4);
         assert!(texels.chunks_exact(4).all(|texel| texel == value.to_le_bytes()), "{most_bytes}");
     }

@@ -9,22 +9,23 @@ use wgpu::{CommandEncoder, LoadOp};
 
 use super::{
     Gpu, GpuError,
+    area_buffers::AreaBuffers,
     drawables::{
         areas::{AreaTile, StencilAreas},
         average::Average,
         composite::Composite,
         decks::Decks,
         difference::Difference,
-        geo_roads,
         label_blocks::LabelBlocks,
+        label_colors::LabelColors,
         level_connectors::LevelConnectors,
-        line_layers::LineColors,
-        sv_roads,
+        line_layers,
         terrain::Terrain,
     },
     passes::{begin, begin_with_stencil},
     picture::Picture,
-    road_instances::{RoadBuffers, RoadPipeline},
+    pipeline::ENTRIES,
+    road_instances::{RoadBuffers, RoadInstance, RoadPipeline},
     shared_bindings::{SharedBindings, SharedLayouts},
     target_texture::TargetTexture,
     targets::{LabelTargets, Targets},
@@ -35,7 +36,8 @@ use crate::{
     frame_view::FrameView,
     layer_view::view_of_lines,
     options::{ClassSet, RoadMethod},
-    tiles::LineLayer,
+    scene::BorderTile,
+    tiles::{LineLayer, RoadSegment, RoadVolume},
 };
 
 /// Knows how to draw tiles; holds nothing of any frame. What not every picture needs is made when a picture first needs it.
@@ -48,7 +50,7 @@ pub struct Renderer {
     decks: OnceLock<Decks>,
     blocks: LabelBlocks,
     composite: Composite,
-    line_colors: OnceLock<LineColors>,
+    line_colors: OnceLock<LabelColors>,
     average: Average,
     difference: OnceLock<Difference>,
 }
@@ -88,16 +90,17 @@ impl Renderer {
         targets: &Targets,
         mut timer: Option<&mut PassTimer>,
     ) {
-        let tile_uniforms = tiles.iter().map(DrawTile::uniforms);
-        let shared = SharedBindings::new(gpu, &self.layouts, view, tile_uniforms, targets);
-        let roads = LabelledLines::new(gpu, tiles, view, |tile| tile.roads(view.roads.method));
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
-        let mut encoder = gpu.device.create_command_encoder(&descriptor);
-        let areas = areas_of(tiles, view, DrawTile::areas);
+        let shared = &self.shared(gpu, view, tiles, targets);
+        let passes = FramePasses { renderer: self, gpu, shared, view, targets };
+        let method = view.roads.method;
+        let on_ground = LevelConnectors::on_ground;
+        let roads = DrawnRoads::new(gpu, tiles, view, |tile| tile.roads(method), on_ground);
+        let areas = areas_of(tiles, view, |tile| &tile.areas);
         let drawn_style = view.style.with_drawn_areas();
-        let drawn_view = FrameView { style: &drawn_style, ..*view };
-        let drawn_areas = areas_of(tiles, &drawn_view, DrawTile::drawn_areas);
-        let decks = DrawnDecks::new(gpu, tiles, view);
+        let drawn_view = &FrameView { style: &drawn_style, ..*view };
+        let drawn_areas = areas_of(tiles, drawn_view, |tile| &tile.drawn_areas);
+        let of_decks = LevelConnectors::of_decks;
+        let decks = DrawnRoads::new(gpu, tiles, view, |tile| tile.decks(method), of_decks);
         if let Some(timer) = &mut timer {
             timer.begin([!areas.is_empty() || !drawn_areas.is_empty(), !decks.is_empty()]);
         }
@@ -106,24 +109,25 @@ impl Renderer {
                 timer.mark(encoder, number);
             }
         };
-        mark(&mut encoder, 0);
-        self.terrain_pass(gpu, &mut encoder, &shared, tiles, view, targets);
-        mark(&mut encoder, 1);
-        let ground = (&targets.ground, targets);
-        self.areas_pass(gpu, &mut encoder, &shared, &areas, view, ground);
-        self.areas_pass(gpu, &mut encoder, &shared, &drawn_areas, &drawn_view, ground);
-        mark(&mut encoder, 2);
-        self.labels_pass(gpu, &mut encoder, &shared, &roads, view, &targets.roads);
-        mark(&mut encoder, 3);
-        self.decks_passes(gpu, &mut encoder, &shared, &decks, targets);
-        mark(&mut encoder, 4);
-        self.composite_pass(gpu, &mut encoder, &shared, view, (targets, &decks));
-        for layer in LineLayer::ALL {
-            self.lines_pass(gpu, &mut encoder, &shared, (tiles, layer), view, targets);
-        }
-        self.average.draw(gpu, &mut encoder, targets.picture());
-        mark(&mut encoder, 5);
-        gpu.queue.submit([encoder.finish()]);
+        gpu.submit("frame", |encoder| {
+            mark(encoder, 0);
+            passes.terrain(encoder, tiles);
+            mark(encoder, 1);
+            passes.areas(encoder, &areas, &targets.ground);
+            let drawn = FramePasses { view: drawn_view, ..passes };
+            drawn.areas(encoder, &drawn_areas, &targets.ground);
+            mark(encoder, 2);
+            passes.labels(encoder, &roads, &targets.roads);
+            mark(encoder, 3);
+            passes.decks(encoder, &decks);
+            mark(encoder, 4);
+            passes.composite(encoder, &decks);
+            for layer in LineLayer::ALL {
+                passes.lines(encoder, tiles, layer);
+            }
+            self.average.draw(gpu, encoder, &targets.picture);
+            mark(encoder, 5);
+        });
     }
 
     /// Shows in `into` where the roads of two drawings differ, over the first one's picture in pale grey. Both were
@@ -138,31 +142,65 @@ impl Renderer {
         second: &Targets,
         into: &Picture,
     ) -> Result<(), GpuError> {
-        let sizes_px = [first.picture(), second.picture(), into].map(Picture::sampled_px);
+        let sizes_px = [&first.picture, &second.picture, into].map(Picture::sampled_px);
         let is_same = sizes_px.iter().all(|size_px| *size_px == sizes_px[0])
-            && first.samples_per_side() == into.samples_per_side();
+            && first.picture.samples_per_side == into.samples_per_side;
         if !is_same {
             return Err(GpuError::SizesDiffer { sizes_px });
         }
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("difference") };
-        let mut encoder = gpu.device.create_command_encoder(&descriptor);
         let difference = self.difference.get_or_init(|| Difference::new(&gpu.device));
-        difference.draw(gpu, &mut encoder, first, second, into);
-        self.average.draw(gpu, &mut encoder, into);
-        gpu.queue.submit([encoder.finish()]);
+        gpu.submit("difference", |encoder| {
+            difference.draw(gpu, encoder, first, second, into);
+            self.average.draw(gpu, encoder, into);
+        });
         Ok(())
     }
 
-    /// Colour, depth and owner of the ground.
-    fn terrain_pass(
+    fn shared(
         &self,
         gpu: &Gpu,
-        encoder: &mut CommandEncoder,
-        shared: &SharedBindings,
-        tiles: &[DrawTile<'_>],
         view: &FrameView<'_>,
+        tiles: &[DrawTile<'_>],
         targets: &Targets,
-    ) {
+    ) -> SharedBindings {
+        let blocks: Vec<_> =
+            tiles.iter().zip(1..).map(|(tile, number)| tile.rows(view, number)).collect();
+        SharedBindings::new(gpu, &self.layouts, view, &blocks, targets)
+    }
+
+    fn geo_roads(&self, gpu: &Gpu) -> &RoadPipeline {
+        self.geo_roads.get_or_init(|| self.roads_on_ground::<RoadSegment>(gpu))
+    }
+
+    /// Connectors are drawn as shadow volumes whatever the method.
+    fn sv_roads(&self, gpu: &Gpu) -> &RoadPipeline {
+        self.sv_roads.get_or_init(|| self.roads_on_ground::<RoadVolume>(gpu))
+    }
+
+    fn roads_on_ground<T: RoadInstance>(&self, gpu: &Gpu) -> RoadPipeline {
+        let layouts = &self.layouts;
+        RoadPipeline::new::<T>(&gpu.device, layouts, &layouts.ground, ENTRIES, None)
+    }
+
+    fn decks(&self, gpu: &Gpu) -> &Decks {
+        self.decks.get_or_init(|| Decks::new(&gpu.device, &self.layouts))
+    }
+}
+
+/// What the passes of a frame draw with and into.
+#[derive(Clone, Copy)]
+struct FramePasses<'a> {
+    renderer: &'a Renderer,
+    gpu: &'a Gpu,
+    shared: &'a SharedBindings,
+    view: &'a FrameView<'a>,
+    targets: &'a Targets,
+}
+
+impl FramePasses<'_> {
+    /// Colour, depth and owner of the ground.
+    fn terrain(self, encoder: &mut CommandEncoder, tiles: &[DrawTile<'_>]) {
+        let Self { renderer, gpu, shared, view, targets } = self;
         let Targets { ground, depth, owners, .. } = targets;
         let colors = [&ground.view, &owners.view];
         let mut pass = begin(encoder, "terrain", &colors, Some(&depth.view), LoadOp::Clear(()));
@@ -173,211 +211,138 @@ impl Renderer {
                 Some((index, tile.buffers.ground.as_ref()?, &tile.buffers.textures))
             })
             .collect();
-        self.terrain.draw(gpu, &mut pass, shared, &grounds, view);
+        renderer.terrain.draw(gpu, &mut pass, shared, &grounds, view);
     }
 
     /// Areas, over colours such as those of the ground. Without areas there is no such pass.
-    fn areas_pass(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut CommandEncoder,
-        shared: &SharedBindings,
-        areas: &[AreaTile<'_>],
-        view: &FrameView<'_>,
-        (into, targets): (&TargetTexture, &Targets),
-    ) {
+    fn areas(self, encoder: &mut CommandEncoder, areas: &[AreaTile<'_>], into: &TargetTexture) {
+        let Self { renderer, gpu, shared, view, targets } = self;
         if areas.is_empty() {
             return;
         }
         let stencil = &targets.stencil(gpu).view;
         let mut pass = begin_with_stencil(encoder, "areas", &into.view, stencil);
-        let drawable = self.areas.get_or_init(|| StencilAreas::new(&gpu.device, &self.layouts));
-        drawable.draw(gpu, &mut pass, shared, areas, view);
+        let new = || StencilAreas::new(&gpu.device, &renderer.layouts);
+        renderer.areas.get_or_init(new).draw(gpu, &mut pass, shared, areas, view);
     }
 
     /// Labels of roads, or of lines of a layer: of each tile those of the classes that are shown there.
-    fn labels_pass(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut CommandEncoder,
-        shared: &SharedBindings,
-        lines: &LabelledLines<'_>,
-        view: &FrameView<'_>,
-        targets: &LabelTargets,
-    ) {
+    fn labels(self, encoder: &mut CommandEncoder, roads: &DrawnRoads<'_>, targets: &LabelTargets) {
+        let Self { renderer, gpu, shared, view, .. } = self;
         // The pass clears the labels even when it draws nothing.
         let mut pass = begin(encoder, "labels", &[&targets.labels.view], None, LoadOp::Clear(()));
-        let of_tiles = lines.of_tiles.iter().zip(&lines.shown).enumerate();
-        let of_tiles =
-            of_tiles.filter_map(|(index, (buffers, classes))| Some((index, (*buffers)?, *classes)));
-        match view.roads.method {
-            RoadMethod::Geometry => {
-                self.geo_roads(gpu).draw(&mut pass, shared, shared.ground(), of_tiles);
-            }
-            RoadMethod::ShadowVolumes => {
-                self.sv_roads(gpu).draw(&mut pass, shared, shared.ground(), of_tiles);
-            }
+        let pipeline = match view.roads.method {
+            RoadMethod::Geometry => renderer.geo_roads(gpu),
+            RoadMethod::ShadowVolumes => renderer.sv_roads(gpu),
             RoadMethod::None => return,
+        };
+        pipeline.draw(&mut pass, shared, &shared.ground, &roads.of_tiles);
+        if !roads.connectors.is_empty() {
+            roads.connectors.draw(&mut pass, shared, &shared.ground, renderer.sv_roads(gpu));
         }
-        if !lines.connectors.is_empty() {
-            lines.connectors.draw(&mut pass, shared, shared.ground(), self.sv_roads(gpu));
-        }
-    }
-
-    fn geo_roads(&self, gpu: &Gpu) -> &RoadPipeline {
-        self.geo_roads.get_or_init(|| geo_roads::pipeline(&gpu.device, &self.layouts))
-    }
-
-    /// Connectors are drawn as shadow volumes whatever the method.
-    fn sv_roads(&self, gpu: &Gpu) -> &RoadPipeline {
-        self.sv_roads.get_or_init(|| sv_roads::pipeline(&gpu.device, &self.layouts))
     }
 
     /// A layer of lines, over the samples of the picture. Where no tile has such lines, or the style draws none, there is no such pass.
-    fn lines_pass(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut CommandEncoder,
-        shared: &SharedBindings,
-        (tiles, layer): (&[DrawTile<'_>], LineLayer),
-        view: &FrameView<'_>,
-        targets: &Targets,
-    ) {
-        let style = layer.style_of(view.style);
-        let view = view_of_lines(view, &style);
-        let lines =
-            LabelledLines::new(gpu, tiles, &view, |tile| tile.lines(layer, view.roads.method));
+    fn lines(self, encoder: &mut CommandEncoder, tiles: &[DrawTile<'_>], layer: LineLayer) {
+        let Self { renderer, gpu, shared, targets, .. } = self;
+        let style = layer.style_of(self.view.style);
+        let view = &view_of_lines(self.view, &style);
+        let lines = DrawnRoads::of_layer(gpu, tiles, view, layer);
         if lines.is_empty() {
             return;
         }
-        let shared = shared.with_view(gpu, &self.layouts, &view, targets);
+        let shared = &shared.with_view(gpu, &renderer.layouts, view, targets);
         let labels = targets.lines(gpu);
-        self.labels_pass(gpu, encoder, &shared, &lines, &view, labels);
-        self.blocks.find(gpu, encoder, &shared, labels);
-        let into = [targets.picture().drawn()];
+        FramePasses { shared, view, ..self }.labels(encoder, &lines, labels);
+        renderer.blocks.find(gpu, encoder, shared, labels);
+        let into = [targets.picture.drawn()];
         let mut pass = begin(encoder, "lines", &into, None, LoadOp::Load);
-        let line_colors =
-            self.line_colors.get_or_init(|| LineColors::new(&gpu.device, &self.layouts));
-        line_colors.draw(gpu, &mut pass, &shared, (&view, layer), targets);
+        let colors = renderer
+            .line_colors
+            .get_or_init(|| line_layers::line_colors(&gpu.device, &renderer.layouts));
+        let rows = line_layers::rows(view, layer);
+        colors.bind(gpu, &mut pass, shared, &rows, (targets, labels), &[&targets.roads.labels]);
+        colors.draw(&mut pass, targets);
     }
 
     /// The samples of the picture. What is drawn over the map, such as labels, is drawn after the composite: in this pass, or
     /// in one with `LoadOp::Load` if it needs a depth test.
-    fn composite_pass(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut CommandEncoder,
-        shared: &SharedBindings,
-        view: &FrameView<'_>,
-        (targets, decks): (&Targets, &DrawnDecks<'_>),
-    ) {
+    fn composite(self, encoder: &mut CommandEncoder, decks: &DrawnRoads<'_>) {
+        let Self { renderer, gpu, shared, view, targets } = self;
         if view.roads.method != RoadMethod::None {
-            self.blocks.find(gpu, encoder, shared, &targets.roads);
+            renderer.blocks.find(gpu, encoder, shared, &targets.roads);
         }
         if !decks.is_empty() {
-            self.blocks.find(gpu, encoder, shared, &targets.decks(gpu).labels);
+            renderer.blocks.find(gpu, encoder, shared, &targets.decks(gpu).labels);
         }
-        let into = [targets.picture().drawn()];
+        let into = [targets.picture.drawn()];
         let mut pass = begin(encoder, "composite", &into, None, LoadOp::Clear(()));
-        self.composite.draw(gpu, &mut pass, shared, view, targets);
+        renderer.composite.draw(gpu, &mut pass, shared, view, targets);
         if !decks.is_empty() {
             let seen = (targets, targets.decks(gpu));
-            self.decks(gpu).draw_colors(gpu, &mut pass, shared, view, seen);
+            renderer.decks(gpu).draw_colors(gpu, &mut pass, shared, view, seen);
         }
     }
 
     /// Depths and labels of decks of bridges. Without decks there are no such passes.
-    fn decks_passes(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut CommandEncoder,
-        shared: &SharedBindings,
-        decks: &DrawnDecks<'_>,
-        targets: &Targets,
-    ) {
+    fn decks(self, encoder: &mut CommandEncoder, decks: &DrawnRoads<'_>) {
+        let Self { renderer, gpu, shared, targets, .. } = self;
         if !decks.is_empty() {
-            let tiles = decks.of_tiles.iter().copied();
+            let drawn = (&decks.of_tiles[..], &decks.connectors);
             let into = (targets, targets.decks(gpu));
-            self.decks(gpu).draw(gpu, encoder, shared, &tiles, into, &|pass, drawn, pipeline| {
-                decks.connectors.draw(pass, shared, drawn, pipeline);
-            });
+            renderer.decks(gpu).draw(gpu, encoder, shared, drawn, into);
         }
-    }
-
-    fn decks(&self, gpu: &Gpu) -> &Decks {
-        self.decks.get_or_init(|| Decks::new(&gpu.device, &self.layouts))
     }
 }
 
-/// The decks of bridges of a frame. They are part of the roads, whatever the method.
-struct DrawnDecks<'a> {
-    /// The decks of tiles, each with its index in the list of tiles of the frame and the classes that are shown there.
+/// The roads of all tiles of a frame, their decks of bridges, or their lines of one layer.
+struct DrawnRoads<'a> {
+    /// The roads of tiles, each with its index in the list of tiles of the frame and the classes that are shown there.
     of_tiles: Vec<(usize, &'a RoadBuffers, ClassSet)>,
     connectors: LevelConnectors,
 }
 
-impl<'a> DrawnDecks<'a> {
-    fn new(gpu: &Gpu, tiles: &'a [DrawTile<'_>], view: &FrameView<'_>) -> Self {
-        let tiles = if view.roads.method == RoadMethod::None { &[] } else { tiles };
-        let shown: Vec<_> = tiles.iter().map(|tile| tile.shown_classes(view)).collect();
-        let all = tiles.iter().zip(&shown).enumerate();
-        let of_tiles =
-            all.map(|(index, (tile, shown))| (index, &tile.buffers.decks, *shown)).collect();
-        let borders: Vec<_> =
-            tiles.iter().map(|tile| tile.border(Some(&tile.buffers.decks))).collect();
-        let reference_of = |index: usize| tiles[index].buffers.reference_m;
-        let connectors = LevelConnectors::of_decks(gpu, &borders, reference_of, &shown);
-        Self { of_tiles, connectors }
-    }
-
-    fn is_empty(&self) -> bool {
-        self.of_tiles.iter().all(|(_, decks, shown)| decks.runs(*shown).is_empty())
-    }
-}
-
-/// The roads of all tiles of a frame, or their lines of one layer.
-struct LabelledLines<'a> {
-    /// The roads of each tile.
-    of_tiles: Vec<Option<&'a RoadBuffers>>,
-    /// The classes that are shown somewhere on each tile.
-    shown: Vec<ClassSet>,
-    connectors: LevelConnectors,
-}
-
-impl<'a> LabelledLines<'a> {
+impl<'a> DrawnRoads<'a> {
     fn new(
         gpu: &Gpu,
-        tiles: &'a [DrawTile<'_>],
+        tiles: &[DrawTile<'a>],
         view: &FrameView<'_>,
         of: impl Fn(&'a TileBuffers) -> Option<&'a RoadBuffers>,
+        connect: impl Fn(&Gpu, &[BorderTile<'_>], &[ClassSet]) -> LevelConnectors,
     ) -> Self {
-        let of_tiles: Vec<_> = tiles.iter().map(|tile| of(tile.buffers)).collect();
+        let roads: Vec<_> = tiles.iter().map(|tile| of(tile.buffers)).collect();
         let shown: Vec<_> = tiles.iter().map(|tile| tile.shown_classes(view)).collect();
         let borders: Vec<_> =
-            tiles.iter().zip(&of_tiles).map(|(tile, roads)| tile.border(*roads)).collect();
-        let reference_of = |index: usize| tiles[index].buffers.reference_m;
-        let connectors = LevelConnectors::on_ground(gpu, &borders, reference_of, &shown);
-        Self { of_tiles, shown, connectors }
+            tiles.iter().zip(&roads).map(|(tile, roads)| tile.border(*roads)).collect();
+        let connectors = connect(gpu, &borders, &shown);
+        let of_tiles = roads.into_iter().zip(shown).enumerate();
+        let of_tiles = of_tiles.filter_map(|(index, (roads, shown))| Some((index, roads?, shown)));
+        Self { of_tiles: of_tiles.collect(), connectors }
+    }
+
+    /// The lines of a layer; `view` is the layer's.
+    fn of_layer(gpu: &Gpu, tiles: &[DrawTile<'a>], view: &FrameView<'_>, layer: LineLayer) -> Self {
+        let of = |tile| TileBuffers::lines(tile, layer, view.roads.method);
+        Self::new(gpu, tiles, view, of, LevelConnectors::on_ground)
     }
 
     /// Whether nothing of them is shown.
     fn is_empty(&self) -> bool {
-        let of_tiles = self.of_tiles.iter().zip(&self.shown);
-        of_tiles
-            .filter_map(|(roads, shown)| Some(roads.as_ref()?.runs(*shown)))
-            .all(|r| r.is_empty())
+        self.of_tiles.iter().all(|(_, roads, shown)| roads.runs(*shown).is_empty())
     }
 }
 
 /// The tiles that have areas of a class that is drawn, among those that `of` finds on a tile.
 fn areas_of<'a>(
-    tiles: &'a [DrawTile<'_>],
+    tiles: &[DrawTile<'a>],
     view: &FrameView<'_>,
-    of: impl Fn(&'a DrawTile<'a>, usize, &FrameView<'_>) -> Option<AreaTile<'a>>,
+    of: impl Fn(&'a TileBuffers) -> &'a Option<AreaBuffers>,
 ) -> Vec<AreaTile<'a>> {
     let has_drawn = |(_, areas, _): &AreaTile<'_>| {
-        areas.classes().iter().any(|of| view.style.area(of.class).is_drawn())
+        areas.classes.iter().any(|of| view.style.area(of.class).is_drawn())
     };
-    let tiles = tiles.iter().enumerate();
-    tiles.filter_map(|(index, tile)| of(tile, index, view)).filter(has_drawn).collect()
+    let counted = |(index, tile): (usize, &DrawTile<'a>)| {
+        Some(tile.counted(index, of(tile.buffers).as_ref()?, view))
+    };
+    tiles.iter().enumerate().filter_map(counted).filter(has_drawn).collect()
 }

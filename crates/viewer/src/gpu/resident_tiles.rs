@@ -9,7 +9,7 @@ use crate::{lod::Drawn, tiles::TileGeometry};
 
 /// The tiles on the graphics card, for views that change.
 #[derive(Default)]
-pub struct ResidentTiles(BTreeMap<TileId, TileBuffers>);
+pub struct ResidentTiles(pub(crate) BTreeMap<TileId, TileBuffers>);
 
 impl ResidentTiles {
     /// Removes tiles and uploads others. A tile is shaded by the slopes of its parent too, which must be there before it.
@@ -22,6 +22,12 @@ impl ResidentTiles {
             let buffers = TileBuffers::new(gpu, tile, above.map(TileBuffers::slopes));
             self.0.insert(tile.id, buffers);
         }
+    }
+
+    /// Bytes on the graphics card.
+    #[must_use]
+    pub fn gpu_bytes(&self) -> u64 {
+        self.0.values().map(TileBuffers::gpu_bytes).sum()
     }
 
     /// Removes all.

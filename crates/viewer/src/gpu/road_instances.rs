@@ -37,23 +37,6 @@ pub(crate) fn own_width_value(own: OwnWidth) -> f32 {
     }
 }
 
-/// What such pipelines differ in.
-pub(crate) struct RoadRecipe<'a> {
-    pub(crate) shader: Shader,
-    pub(crate) instance_bytes: u64,
-    pub(crate) attributes: &'a [VertexAttribute],
-    pub(crate) cull: Option<wgpu::Face>,
-    /// Corners of the strip of triangles that is drawn for each instance.
-    pub(crate) corners: Range<u32>,
-    /// The layout of what is bound at group 2.
-    pub(crate) drawn: &'a wgpu::BindGroupLayout,
-    pub(crate) entries: [&'a str; 2],
-    /// Without it no depth is tested.
-    pub(crate) depth: Option<wgpu::DepthStencilState>,
-    /// Whether labels are drawn, of which the largest stays; else only depth is.
-    pub(crate) has_labels: bool,
-}
-
 /// Draws roads by one method into the labels.
 pub(crate) struct RoadPipeline {
     pipeline: RenderPipeline,
@@ -61,43 +44,50 @@ pub(crate) struct RoadPipeline {
 }
 
 impl RoadPipeline {
-    pub(crate) fn new(device: &Device, layouts: &SharedLayouts, recipe: &RoadRecipe<'_>) -> Self {
-        let groups = [Some(&layouts.frame), Some(&layouts.tile), Some(recipe.drawn)];
+    /// The pipeline for pieces of a kind. `drawn` is the layout of what is bound at group 2. With `depth` that alone is drawn; without it labels are, of
+    /// which the largest stays.
+    pub(crate) fn new<T: RoadInstance>(
+        device: &Device,
+        layouts: &SharedLayouts,
+        drawn: &wgpu::BindGroupLayout,
+        entries: [&str; 2],
+        depth: Option<wgpu::DepthStencilState>,
+    ) -> Self {
         let largest = BlendState { color: LARGEST, alpha: LARGEST };
-        let labels = [(LABEL, ColorWrites::ALL)];
+        let is_labelled = depth.is_none();
         let pipeline = PipelineRecipe {
-            shader: recipe.shader,
-            entries: recipe.entries,
-            groups: &groups,
+            shader: T::SHADER,
+            entries,
+            groups: &[Some(&layouts.frame), Some(&layouts.tile), Some(drawn)],
             buffer: Some(VertexBufferLayout {
-                array_stride: recipe.instance_bytes,
+                array_stride: size_of::<T::Words>() as u64,
                 step_mode: VertexStepMode::Instance,
-                attributes: recipe.attributes,
+                attributes: T::ATTRIBUTES,
             }),
             topology: PrimitiveTopology::TriangleStrip,
             front_face: FrontFace::Ccw,
-            cull: recipe.cull,
-            depth: recipe.depth.clone(),
-            targets: if recipe.has_labels { &labels } else { &[] },
-            blend: recipe.has_labels.then_some(largest),
+            cull: T::CULL,
+            depth,
+            targets: if is_labelled { &[(LABEL, ColorWrites::ALL)] } else { &[] },
+            blend: is_labelled.then_some(largest),
             constants: &[],
         };
-        Self { pipeline: pipeline.build(device), corners: recipe.corners.clone() }
+        Self { pipeline: pipeline.build(device), corners: T::CORNERS }
     }
 
     /// Draws roads of some tiles, each given with its index in the list of tiles of the frame and the classes to draw. One
     /// draw per tile is enough, because the target keeps the largest label: neither the order of classes nor that of tiles matters.
-    pub(crate) fn draw<'a>(
+    pub(crate) fn draw(
         &self,
         pass: &mut RenderPass<'_>,
         shared: &SharedBindings,
         drawn: &BindGroup,
-        tiles: impl Iterator<Item = (usize, &'a RoadBuffers, ClassSet)>,
+        tiles: &[(usize, &RoadBuffers, ClassSet)],
     ) {
         self.begin(pass, shared, drawn);
         for (index, roads, classes) in tiles {
-            shared.set_tile(pass, index);
-            roads.draw(pass, classes, &self.corners);
+            shared.set_tile(pass, *index);
+            roads.draw(pass, *classes, &self.corners);
         }
     }
 
@@ -140,6 +130,13 @@ pub(crate) struct RoadBuffers {
 pub(crate) trait RoadInstance {
     /// The instance, as words.
     type Words: bytemuck::Pod;
+    const SHADER: Shader;
+    /// The words as the shader takes them.
+    const ATTRIBUTES: &'static [VertexAttribute];
+    /// Corners of the strip of triangles that is drawn for each instance.
+    const CORNERS: Range<u32>;
+    /// Which faces are not drawn.
+    const CULL: Option<wgpu::Face>;
     /// The words of this piece.
     fn words(&self) -> Self::Words;
 }

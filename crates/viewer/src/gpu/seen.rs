@@ -132,7 +132,7 @@ pub(crate) fn heights_m(
     vertical_scale: f64,
     depths: impl Iterator<Item = (usize, f64)>,
 ) -> impl Iterator<Item = (usize, f64)> {
-    let columns = camera.size_px()[0] as usize;
+    let columns = camera.size_px[0] as usize;
     depths.filter(|(_, depth)| *depth > 0.0).map(move |(place, depth)| {
         let middle = DVec2::new((place % columns) as f64, (place / columns) as f64) + 0.5;
         let start = camera.ray_start_in_world(middle).z;

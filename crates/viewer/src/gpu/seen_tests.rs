@@ -5,7 +5,7 @@ use corniche_geom::Bounds;
 use super::*;
 use crate::{
     camera::{Orientation, WorldBox},
-    gpu::labels::{road_label, service_label, tunnel_label},
+    gpu::labels_tests::{road_label, service_label, tunnel_label},
 };
 
 fn numbers(classes: ClassSet) -> Vec<u8> {

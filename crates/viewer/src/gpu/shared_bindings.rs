@@ -20,7 +20,7 @@ use super::{
     Gpu,
     bindings::{UNFILTERED, group, layout, texture, textures, uniform},
     targets::Targets,
-    uniforms::{self, TileUniforms},
+    uniforms,
 };
 use crate::frame_view::FrameView;
 
@@ -46,27 +46,25 @@ impl SharedLayouts {
 /// The shared bind groups of one frame.
 #[derive(Clone)]
 pub(crate) struct SharedBindings {
-    frame: BindGroup,
+    pub(crate) frame: BindGroup,
     tiles: BindGroup,
     /// Bytes from one tile's block to the next.
     tile_stride: u32,
-    ground: BindGroup,
+    pub(crate) ground: BindGroup,
 }
 
 impl SharedBindings {
-    /// Uploads the uniform blocks of a frame and of its `tiles`, in the order in which they are drawn.
+    /// Uploads the uniform blocks of a frame and of its tiles, in the order in which they are drawn.
     pub(crate) fn new(
         gpu: &Gpu,
         layouts: &SharedLayouts,
         view: &FrameView<'_>,
-        tiles: impl ExactSizeIterator<Item = TileUniforms>,
+        tiles: &[[[f32; 4]; 2]],
         targets: &Targets,
     ) -> Self {
-        let rows = uniforms::frame_rows(view, targets.samples_per_side());
-        let frame = gpu.buffer("frame", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
         let tile_stride = u64::from(gpu.device.limits().min_uniform_buffer_offset_alignment)
             .max(uniforms::TILE_BYTES);
-        let tiles = tile_blocks(gpu, view, tiles, tile_stride as usize);
+        let tiles = tile_blocks(gpu, tiles, tile_stride as usize);
         let tile_block = wgpu::BufferBinding {
             buffer: &tiles,
             offset: 0,
@@ -74,7 +72,7 @@ impl SharedBindings {
         };
         let Targets { depth, owners, .. } = targets;
         Self {
-            frame: group(gpu, &layouts.frame, &[frame.as_entire_binding()]),
+            frame: frame_group(gpu, layouts, view, targets),
             tiles: group(gpu, &layouts.tile, &[BindingResource::Buffer(tile_block)]),
             tile_stride: tile_stride as u32,
             ground: textures(gpu, &layouts.ground, &[&depth.view, &owners.view]),
@@ -89,14 +87,7 @@ impl SharedBindings {
         view: &FrameView<'_>,
         targets: &Targets,
     ) -> Self {
-        let rows = uniforms::frame_rows(view, targets.samples_per_side());
-        let frame = gpu.buffer("frame", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
-        Self { frame: group(gpu, &layouts.frame, &[frame.as_entire_binding()]), ..self.clone() }
-    }
-
-    /// The bind group of the frame's uniform block.
-    pub(crate) fn frame(&self) -> &BindGroup {
-        &self.frame
+        Self { frame: frame_group(gpu, layouts, view, targets), ..self.clone() }
     }
 
     /// Binds the frame.
@@ -108,25 +99,26 @@ impl SharedBindings {
     pub(crate) fn set_tile(&self, pass: &mut RenderPass<'_>, index: usize) {
         pass.set_bind_group(1, &self.tiles, &[index as u32 * self.tile_stride]);
     }
+}
 
-    /// The bind group of the ground as the terrain pass drew it.
-    pub(crate) fn ground(&self) -> &BindGroup {
-        &self.ground
-    }
+/// Uploads the uniform block of a frame.
+fn frame_group(
+    gpu: &Gpu,
+    layouts: &SharedLayouts,
+    view: &FrameView<'_>,
+    targets: &Targets,
+) -> BindGroup {
+    let rows = uniforms::frame_rows(view, targets.picture.samples_per_side);
+    let frame = gpu.buffer("frame", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
+    group(gpu, &layouts.frame, &[frame.as_entire_binding()])
 }
 
 /// Uploads the uniform blocks of tiles, `stride` bytes apart.
-fn tile_blocks(
-    gpu: &Gpu,
-    view: &FrameView<'_>,
-    tiles: impl ExactSizeIterator<Item = TileUniforms>,
-    stride: usize,
-) -> Buffer {
+fn tile_blocks(gpu: &Gpu, tiles: &[[[f32; 4]; 2]], stride: usize) -> Buffer {
     // At least one block, so that there is something to bind without tiles.
     let mut blocks = vec![0_u8; stride * tiles.len().max(1)];
-    for ((tile, number), block) in tiles.zip(1..).zip(blocks.chunks_exact_mut(stride)) {
-        let rows = uniforms::tile_rows(view, &tile, number);
-        block[..uniforms::TILE_BYTES as usize].copy_from_slice(bytemuck::cast_slice(&rows));
+    for (rows, block) in tiles.iter().zip(blocks.chunks_exact_mut(stride)) {
+        block[..uniforms::TILE_BYTES as usize].copy_from_slice(bytemuck::cast_slice(rows));
     }
     gpu.buffer("tiles", &blocks, BufferUsages::UNIFORM)
 }

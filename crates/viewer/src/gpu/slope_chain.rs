@@ -3,7 +3,7 @@
 use corniche_geom::{TILE_CELLS, TileId};
 use wgpu::{TextureFormat, TextureView};
 
-use super::{Gpu, square_texture::square};
+use super::{Gpu, square_texture::of_one_size};
 use crate::tiles::{MOST_SLOPES_ABOVE, ShadingSlopes, TileGeometry};
 
 /// The slopes: rise east and north.
@@ -29,8 +29,8 @@ impl SlopeChain {
     #[must_use]
     pub fn new(gpu: &Gpu, tile: &TileGeometry, above: Option<&Self>) -> Self {
         let Some(slopes) = &tile.shading else { return Self::default() };
-        let side = ShadingSlopes::SIDE as u32;
-        let own = square(gpu, SLOPES, side, bytemuck::cast_slice(slopes.texels()));
+        let texels = bytemuck::cast_slice(&slopes.texels);
+        let own = of_one_size(gpu, SLOPES, ShadingSlopes::SIDE, texels);
         let above = above.iter().flat_map(|above| above.textures.iter().cloned());
         Self { textures: std::iter::once(own).chain(above).take(Self::LEVELS).collect() }
     }
@@ -38,7 +38,7 @@ impl SlopeChain {
     /// Bytes of what [`SlopeChain::new`] uploads.
     #[must_use]
     pub fn bytes_of(tile: &TileGeometry) -> u64 {
-        tile.shading.as_ref().map_or(0, |slopes| size_of_val(slopes.texels()) as u64)
+        tile.shading.as_ref().map_or(0, |slopes| size_of_val(&slopes.texels) as u64)
     }
 
     /// All of them, the tile's own first. Where there are fewer levels the last one is repeated; `none` takes the place of

@@ -49,7 +49,8 @@ pub struct Targets {
     lines: OnceLock<LabelTargets>,
     /// Made when decks are first drawn.
     decks: OnceLock<DeckTargets>,
-    picture: Picture,
+    /// The picture.
+    pub picture: Picture,
 }
 
 impl Targets {
@@ -75,24 +76,6 @@ impl Targets {
             decks: OnceLock::new(),
             picture,
         })
-    }
-
-    /// The picture.
-    #[must_use]
-    pub fn picture(&self) -> &Picture {
-        &self.picture
-    }
-
-    /// Width and height of the picture.
-    #[must_use]
-    pub fn size_px(&self) -> [u32; 2] {
-        self.picture.size_px()
-    }
-
-    /// Samples on each side of one of its pixels.
-    #[must_use]
-    pub fn samples_per_side(&self) -> u32 {
-        self.picture.samples_per_side()
     }
 
     /// The stencil in which volumes of areas are counted. It is a texture of its own, because a pass cannot write the stencil of a texture

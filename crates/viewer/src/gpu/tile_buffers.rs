@@ -1,7 +1,7 @@
 //! The buffers of a tile on the graphics card, and how many bytes they take.
 
 use corniche_geom::TileId;
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 use super::{
     Gpu,
@@ -11,7 +11,7 @@ use super::{
     road_instances::RoadBuffers,
     slope_chain::SlopeChain,
     tile_textures::TileTextures,
-    uniforms::TileUniforms,
+    uniforms::row,
 };
 use crate::{
     camera::{Projection, WorldBox},
@@ -19,7 +19,10 @@ use crate::{
     frame_view::FrameView,
     options::{ClassSet, RoadMethod},
     scene::BorderTile,
-    tiles::{AreaVolumes, ClassVolumes, LineLayer, TileGeometry, TileLayer, plan_around},
+    tiles::{
+        AreaVolumes, ClassVolumes, LineLayer, NearHeights, RoadSegments, RoadVolumes, TileGeometry,
+        TileLayer, plan_around,
+    },
 };
 
 /// A tile on the graphics card.
@@ -31,18 +34,18 @@ pub struct TileBuffers {
     pub(crate) ground: Option<GroundBuffers>,
     pub(crate) textures: TileTextures,
     /// `None` without areas.
-    areas: Option<AreaBuffers>,
+    pub(crate) areas: Option<AreaBuffers>,
     /// The areas that a person draws.
-    drawn_areas: Option<AreaBuffers>,
-    segments: RoadBuffers,
-    volumes: RoadBuffers,
+    pub(crate) drawn_areas: Option<AreaBuffers>,
+    roads: LayerBuffers,
     /// Bridges, for both methods.
-    pub(crate) decks: RoadBuffers,
+    decks: RoadBuffers,
     layers: [LayerBuffers; LineLayer::ALL.len()],
     width_margin_m: f64,
     /// Lowest and highest true height of its ground and its decks; `None` without ground.
     height_range_m: Option<[f64; 2]>,
-    triangles: u64,
+    /// Triangles of its ground, without those of its skirts.
+    pub triangles: u64,
 }
 
 /// A layer of lines of a tile on the graphics card, for both methods.
@@ -52,10 +55,19 @@ struct LayerBuffers {
 }
 
 impl LayerBuffers {
-    fn new(gpu: &Gpu, lines: &TileLayer) -> Self {
-        Self {
-            segments: RoadBuffers::new(gpu, &lines.segments),
-            volumes: RoadBuffers::new(gpu, &lines.volumes),
+    fn new(gpu: &Gpu, segments: &RoadSegments, volumes: &RoadVolumes) -> Self {
+        Self { segments: RoadBuffers::new(gpu, segments), volumes: RoadBuffers::new(gpu, volumes) }
+    }
+
+    fn of_lines(gpu: &Gpu, TileLayer { segments, volumes }: &TileLayer) -> Self {
+        Self::new(gpu, segments, volumes)
+    }
+
+    fn of(&self, method: RoadMethod) -> Option<&RoadBuffers> {
+        match method {
+            RoadMethod::Geometry => Some(&self.segments),
+            RoadMethod::ShadowVolumes => Some(&self.volumes),
+            RoadMethod::None => None,
         }
     }
 
@@ -102,10 +114,9 @@ impl TileBuffers {
             textures: TileTextures::new(gpu, tile, above),
             areas: AreaBuffers::new(gpu, &tile.areas),
             drawn_areas: None,
-            segments: RoadBuffers::new(gpu, &tile.roads),
-            volumes: RoadBuffers::new(gpu, &tile.volumes),
+            roads: LayerBuffers::new(gpu, &tile.roads, &tile.volumes),
             decks: RoadBuffers::new(gpu, &tile.decks),
-            layers: LineLayer::ALL.map(|layer| LayerBuffers::new(gpu, tile.lines.of(layer))),
+            layers: LineLayer::ALL.map(|layer| LayerBuffers::of_lines(gpu, tile.lines.of(layer))),
             width_margin_m: tile.width_margin_m,
             height_range_m: tile.summary.map(|ground| ground.height_range_m),
             triangles: (tile.ground.surface_indices / 3) as u64,
@@ -115,13 +126,7 @@ impl TileBuffers {
     /// Its slopes and those of the tiles above it, for the tiles beneath it.
     #[must_use]
     pub fn slopes(&self) -> &SlopeChain {
-        self.textures.slopes()
-    }
-
-    /// Triangles of its ground, without those of its skirts.
-    #[must_use]
-    pub fn triangles(&self) -> u64 {
-        self.triangles
+        &self.textures.slopes
     }
 
     /// Bytes of its buffers on the graphics card; its wireframe counts once it has been shown.
@@ -135,15 +140,14 @@ impl TileBuffers {
                 .map(AreaBuffers::gpu_bytes)
                 .sum::<u64>()
             + self.textures.gpu_bytes()
-            + self.segments.gpu_bytes()
-            + self.volumes.gpu_bytes()
+            + self.roads.gpu_bytes()
             + self.decks.gpu_bytes()
             + self.layers.iter().map(LayerBuffers::gpu_bytes).sum::<u64>()
     }
 
     /// Replaces a layer of its lines by what the tile now has of it.
     pub fn replace_lines(&mut self, gpu: &Gpu, layer: LineLayer, lines: &TileLayer) {
-        self.layers[layer as usize] = LayerBuffers::new(gpu, lines);
+        self.layers[layer as usize] = LayerBuffers::of_lines(gpu, lines);
     }
 
     /// Replaces the areas that a person draws by what the tile now has of them.
@@ -154,37 +158,34 @@ impl TileBuffers {
     /// The volumes of its areas, class by class.
     #[must_use]
     pub fn area_classes(&self) -> &[ClassVolumes] {
-        self.areas.as_ref().map_or(&[], AreaBuffers::classes)
+        self.areas.as_ref().map_or(&[], |areas| &areas.classes)
     }
 
     /// Its roads as a method draws them.
     pub(crate) fn roads(&self, method: RoadMethod) -> Option<&RoadBuffers> {
-        match method {
-            RoadMethod::Geometry => Some(&self.segments),
-            RoadMethod::ShadowVolumes => Some(&self.volumes),
-            RoadMethod::None => None,
-        }
+        self.roads.of(method)
+    }
+
+    /// Its decks of bridges, which are part of the roads, whatever the method.
+    pub(crate) fn decks(&self, method: RoadMethod) -> Option<&RoadBuffers> {
+        self.roads(method).map(|_| &self.decks)
     }
 
     /// The lines of a layer as a method draws them.
     pub(crate) fn lines(&self, layer: LineLayer, method: RoadMethod) -> Option<&RoadBuffers> {
-        let layer = &self.layers[layer as usize];
-        match method {
-            RoadMethod::Geometry => Some(&layer.segments),
-            RoadMethod::ShadowVolumes => Some(&layer.volumes),
-            RoadMethod::None => None,
-        }
+        self.layers[layer as usize].of(method)
     }
 }
 
 impl DrawTile<'_> {
     /// Where roads, or lines, of it meet its border.
     pub(crate) fn border<'b>(&'b self, roads: Option<&'b RoadBuffers>) -> BorderTile<'b> {
-        let TileBuffers { id, size_m: [east_m, north_m], .. } = *self.buffers;
+        let TileBuffers { id, reference_m, size_m: [east_m, north_m], .. } = *self.buffers;
         BorderTile {
             id,
             side_m: east_m.min(north_m),
             skirt_depth_m: self.skirt_depth_m,
+            reference_m,
             ends: roads.map_or(&[], |roads| &roads.ends),
         }
     }
@@ -192,9 +193,8 @@ impl DrawTile<'_> {
     /// How many segments or volumes of its roads, and pieces of decks, are drawn in a view.
     #[must_use]
     pub fn road_segments(&self, view: &FrameView<'_>) -> u64 {
-        let roads = self.buffers.roads(view.roads.method);
-        let decks = roads.map(|_| &self.buffers.decks);
-        let drawn = [roads, decks].into_iter().flatten();
+        let (tile, method) = (self.buffers, view.roads.method);
+        let drawn = [tile.roads(method), tile.decks(method)].into_iter().flatten();
         let drawn = drawn.flat_map(|roads| roads.runs(self.shown_classes(view)));
         drawn.map(|range| u64::from(range.end - range.start)).sum()
     }
@@ -213,33 +213,37 @@ impl DrawTile<'_> {
             WorldBox::new(plan, height_range_m.map(|height_m| height_m * view.vertical_scale()));
         // GEO also paints the neighbours' ground, within the margin. Twice the margin allows for slopes of 60 degrees there.
         let around_m = 2.0 * width_margin_m + self.skirt_depth_m * view.vertical_scale();
-        match view.camera.projection() {
+        match view.camera.projection {
             Projection::Perspective => {
-                (ground.distance_m(view.camera.eye_in_world()) - around_m).max(0.0)
+                (ground.distance_m(view.camera.eye_in_world) - around_m).max(0.0)
             }
             // The same for all ground.
-            Projection::FromAbove { .. } => view.camera.focus_m(),
+            Projection::FromAbove { .. } => view.camera.focus_m,
         }
     }
 
-    /// Its areas with its index in the list of tiles of the frame, and how they are counted; `None` without areas.
-    pub(crate) fn areas(&self, index: usize, view: &FrameView<'_>) -> Option<AreaTile<'_>> {
-        Some(self.counted(index, self.buffers.areas.as_ref()?, view))
+    /// What shaders are told of it: the block `struct Tile` of `shaders/tile.wgsl`. `number` is its number in the frame, from 1; numbers below 2^24 are
+    /// exact in f32.
+    pub(crate) fn rows(&self, view: &FrameView<'_>, number: u32) -> [[f32; 4]; 2] {
+        let TileBuffers { reference_m: [x, y, height_m], size_m, width_margin_m, .. } =
+            *self.buffers;
+        let reference_in_world = DVec3::new(x, y, height_m * view.vertical_scale());
+        let offset = reference_in_world - view.camera.eye_in_world;
+        let near_m = NearHeights::reach_m(size_m);
+        [
+            row(offset.extend(self.skirt_depth_m * view.vertical_scale())),
+            row(DVec4::new(height_m, width_margin_m, f64::from(number), near_m)),
+        ]
     }
 
-    /// The same of areas that a person draws.
-    pub(crate) fn drawn_areas(&self, index: usize, view: &FrameView<'_>) -> Option<AreaTile<'_>> {
-        Some(self.counted(index, self.buffers.drawn_areas.as_ref()?, view))
-    }
-
-    fn counted<'a>(
+    /// Some of its areas with its index in the list of tiles of the frame, and how they are counted.
+    pub(crate) fn counted<'a>(
         &self,
         index: usize,
         areas: &'a AreaBuffers,
         view: &FrameView<'_>,
     ) -> AreaTile<'a> {
-        let [low, high] =
-            areas.box_in_tile().map(|corner| DVec3::from_array(corner.map(f64::from)));
+        let [low, high] = areas.box_in_tile.map(|corner| DVec3::from_array(corner.map(f64::from)));
         let reference = DVec3::from_array(self.buffers.reference_m);
         let scale = DVec3::new(1.0, 1.0, view.vertical_scale());
         let skirt = DVec3::Z * self.skirt_depth_m;
@@ -247,17 +251,11 @@ impl DrawTile<'_> {
             WorldBox { min: (reference + low - skirt) * scale, max: (reference + high) * scale };
         // The corners of the near plane are farther from the eye than its middle. The rest is for rounding.
         let reach_m = 1.01
-            * view.camera.near_m()
+            * view.camera.near_m
             * view.camera.half_extent_at_unit_depth().extend(1.0).length();
         // From above no face is cut off by the near plane.
-        let is_near = view.camera.projection() == Projection::Perspective
-            && volumes.distance_m(view.camera.eye_in_world()) <= reach_m;
+        let is_near = view.camera.projection == Projection::Perspective
+            && volumes.distance_m(view.camera.eye_in_world) <= reach_m;
         (index, areas, if is_near { Counting::Behind } else { Counting::InFront })
-    }
-
-    /// What shaders are told of it.
-    pub(crate) fn uniforms(&self) -> TileUniforms {
-        let TileBuffers { reference_m, size_m, width_margin_m, .. } = *self.buffers;
-        TileUniforms { reference_m, size_m, width_margin_m, skirt_depth_m: self.skirt_depth_m }
     }
 }

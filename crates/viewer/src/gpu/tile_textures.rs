@@ -9,12 +9,15 @@ use wgpu::{
 use super::{
     Gpu,
     bindings::{group, layout, texture, uniform},
-    photo_texture,
     slope_chain::SlopeChain,
-    square_texture::square,
+    square_texture::{of_one_size, square},
 };
 use crate::tiles::{PhotoImage, ShadingSlopes, TileGeometry};
 
+/// Colours are mixed as they are stored, like all others of the ground.
+const PHOTO: TextureFormat = TextureFormat::Rgba8Unorm;
+/// Along a grazing view so many samples of a photo are averaged.
+const ANISOTROPY: u16 = 16;
 /// Whether a node is water.
 const WATER: TextureFormat = TextureFormat::R8Unorm;
 
@@ -24,7 +27,7 @@ const GROUP: u32 = 3;
 /// The textures of a tile's ground, as `shaders/relief.wgsl` and `shaders/photo.wgsl` declare them.
 pub(crate) struct TileTextures {
     group: BindGroup,
-    slopes: SlopeChain,
+    pub(crate) slopes: SlopeChain,
     bytes: u64,
 }
 
@@ -51,7 +54,7 @@ pub(crate) const ROWS: usize = 3;
 fn rows(tile: &TileGeometry, slopes: &SlopeChain) -> [[f32; 4]; ROWS] {
     let [east, north] = tile.size_m.map(|side_m| (1.0 / side_m) as f32);
     let has = |part: bool| if part { 1.0 } else { 0.0 };
-    let has_water = tile.shading.as_ref().is_some_and(|slopes| !slopes.water().is_empty());
+    let has_water = tile.shading.as_ref().is_some_and(|slopes| !slopes.water.is_empty());
     [
         [east, north, has(tile.shading.is_some()), has(has_water)],
         [has(tile.photo.is_some()), PHOTO_BORDER as f32, 0.0, 0.0],
@@ -62,23 +65,26 @@ fn rows(tile: &TileGeometry, slopes: &SlopeChain) -> [[f32; 4]; ROWS] {
 impl TileTextures {
     /// Uploads the textures of a tile, `above` which there are these slopes. What it does not have is one texel that nothing reads.
     pub(crate) fn new(gpu: &Gpu, tile: &TileGeometry, above: Option<&SlopeChain>) -> Self {
-        let none = square(gpu, photo_texture::FORMAT, 1, &[0; 4]);
+        let none = of_one_size(gpu, PHOTO, 1, &[0; 4]);
         let slopes = SlopeChain::new(gpu, tile, above);
-        let water = match tile.shading.as_ref().map(ShadingSlopes::water) {
-            Some(water) if !water.is_empty() => {
-                square(gpu, WATER, ShadingSlopes::SIDE as u32, water)
-            }
+        let water = match tile.shading.as_ref().map(|slopes| &slopes.water) {
+            Some(water) if !water.is_empty() => of_one_size(gpu, WATER, ShadingSlopes::SIDE, water),
             _ => none.clone(),
         };
-        let photo =
-            tile.photo.as_ref().map_or(none.clone(), |photo| photo_texture::upload(gpu, photo));
-        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        let photo = tile.photo.as_ref();
+        let photo = photo.map_or(none.clone(), |photo| square(gpu, PHOTO, photo.sizes()));
+        let filtering = wgpu::SamplerDescriptor {
             label: Some("tile textures"),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
+        };
+        let sampler = gpu.device.create_sampler(&filtering);
+        let photo_sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            anisotropy_clamp: ANISOTROPY,
+            ..filtering
         });
-        let photo_sampler = photo_texture::sampler(&gpu.device);
         let block = gpu.buffer(
             "tile textures",
             bytemuck::cast_slice(&rows(tile, &slopes)),
@@ -100,15 +106,10 @@ impl TileTextures {
 
     /// Bytes of the textures that [`TileTextures::new`] makes.
     pub(crate) fn bytes_of(tile: &TileGeometry) -> u64 {
-        let water = tile.shading.as_ref().map_or(0, |slopes| slopes.water().len());
+        let water = tile.shading.as_ref().map_or(0, |slopes| slopes.water.len());
         let photo = tile.photo.as_ref().map_or(0, PhotoImage::bytes);
         // With one texel for what is not there.
         SlopeChain::bytes_of(tile) + (4 + water + ROWS * size_of::<[f32; 4]>()) as u64 + photo
-    }
-
-    /// The slopes of the tile and of those above it.
-    pub(crate) fn slopes(&self) -> &SlopeChain {
-        &self.slopes
     }
 
     /// Bytes on the graphics card.

@@ -3,7 +3,7 @@
 //! The frame's block is shared because all drawables need the camera, and because GEO roads, SV roads and the composite must
 //! compute the same road widths. What one drawable alone needs, such as the colours of the ground, is in the drawable's file.
 
-use glam::{DVec3, DVec4};
+use glam::DVec4;
 
 use corniche_styles::{Dash, OwnWidths, RoadBands};
 
@@ -12,7 +12,6 @@ use crate::{
     class_scale,
     frame_view::FrameView,
     options::{CapTest, Caps, Quads, RoadMethod},
-    tiles::NearHeights,
 };
 
 /// Bytes of a tile's block.
@@ -23,9 +22,9 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     let style = view.style;
     // The passes know samples only: for them the picture has as many pixels as there are samples.
     let camera = view.camera.supersampled(samples_per_side);
-    let axes = camera.world_from_view();
+    let axes = camera.world_from_view;
     let half = camera.half_extent();
-    let [width_px, height_px] = camera.size_px().map(f64::from);
+    let [width_px, height_px] = camera.size_px.map(f64::from);
     let samples = samples_per_side as f32;
     // Without roads there are no outlines.
     let outline_px = match view.roads.method {
@@ -43,7 +42,7 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         [
             (axes.x_axis * half.x).extend(width_px),
             (axes.y_axis * half.y).extend(height_px),
-            (-axes.z_axis).extend(camera.near_m()),
+            (-axes.z_axis).extend(camera.near_m),
         ]
         .map(row),
     );
@@ -70,9 +69,9 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     ]);
     let is_level = view.roads.quads == Quads::Level;
     let part_distance_m = class_scale::part_distance_m(style, view.camera) as f32;
-    let parallel = match camera.projection() {
+    let parallel = match camera.projection {
         Projection::Perspective => [0.0, 0.0],
-        Projection::FromAbove { far_m } => [far_m as f32, camera.focus_m() as f32],
+        Projection::FromAbove { far_m } => [far_m as f32, camera.focus_m as f32],
     };
     rows.push([part_distance_m, if is_level { 1.0 } else { 0.0 }, parallel[0], parallel[1]]);
     rows.extend(style.roads.iter().map(|road| {
@@ -104,46 +103,15 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         bytemuck::cast::<_, [[f32; 4]; RoadBands::MOST / 4]>(shares)
     }));
     rows.extend(style.roads.iter().map(|road| {
-        let [first, gap, second] = road.dash.ends();
-        [first, gap, second, road.dash.least_px()]
+        let [first, gap, second] = road.dash.ends;
+        [first, gap, second, road.dash.least_px]
     }));
     rows.extend(style.roads.iter().flat_map(|road| {
         // Without a pattern, a number that is no width.
-        let widths = road.dash.widths().unwrap_or([-1.0; Dash::WIDTHS]);
+        let widths = road.dash.widths.unwrap_or([-1.0; Dash::WIDTHS]);
         bytemuck::cast::<_, [[f32; 4]; Dash::WIDTHS / 4]>(widths)
     }));
     rows
-}
-
-/// What shaders are told of a tile.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::struct_field_names, reason = "all of them are metres, and say so")]
-pub(crate) struct TileUniforms {
-    /// The tile's reference point: x and y in the working CRS, true height.
-    pub(crate) reference_m: [f64; 3],
-    /// The tile's sides, east and north.
-    pub(crate) size_m: [f64; 2],
-    /// Roads are not drawn beyond this half width, world metres.
-    pub(crate) width_margin_m: f64,
-    /// How far the tile's skirt hangs down, true metres.
-    pub(crate) skirt_depth_m: f64,
-}
-
-/// A tile's block, as `struct Tile` of `shaders/tile.wgsl` declares it. `number` is the tile's
-/// number in the frame, from 1; numbers below 2^24 are exact in f32.
-pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &TileUniforms, number: u32) -> [[f32; 4]; 2] {
-    let [x, y, height_m] = tile.reference_m;
-    let reference_in_world = DVec3::new(x, y, height_m * view.vertical_scale());
-    let offset = reference_in_world - view.camera.eye_in_world();
-    [
-        row(offset.extend(tile.skirt_depth_m * view.vertical_scale())),
-        row(DVec4::new(
-            height_m,
-            tile.width_margin_m,
-            f64::from(number),
-            NearHeights::reach_m(tile.size_m),
-        )),
-    ]
 }
 
 /// A row of a block, in f32.

@@ -52,7 +52,8 @@ pub(crate) struct Stand {
 /// the window that recorded it may have had coarser ground only. But no window lets the eye go beneath the coarsest ground.
 pub(crate) struct Survey {
     stands: Vec<Stand>,
-    lifted: Lifted,
+    /// Frames in which the eye was too low.
+    pub(crate) lifted: Lifted,
 }
 
 impl Survey {
@@ -104,11 +105,6 @@ impl Survey {
     /// How the eye stands in a frame of the flight.
     pub(crate) fn stand(&self, frame: u32) -> Stand {
         self.stands[frame as usize]
-    }
-
-    /// Frames in which the eye was too low.
-    pub(crate) fn lifted(&self) -> Lifted {
-        self.lifted
     }
 }
 

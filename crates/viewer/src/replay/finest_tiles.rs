@@ -7,18 +7,19 @@ use corniche_geom::TileId;
 use super::{ReplayError, elapsed::ms_since, frame_tiles::FrameTiles};
 use crate::{
     camera::{Camera, WorldBox},
-    gpu::{Gpu, SlopeChain, TileBuffers, tile_bytes},
+    gpu::{Gpu, ResidentTiles, SlopeChain, TileBuffers, tile_bytes},
     lod::Drawn,
     tiles::BlockingPackage,
 };
 
 /// All tiles that have no finer tiles beneath them, loaded before the flight begins.
+#[derive(Default)]
 pub(crate) struct FinestTiles {
-    buffers: BTreeMap<TileId, TileBuffers>,
+    pub(crate) tiles: ResidentTiles,
     /// The lowest and highest true height of their ground; tiles without ground are left out.
     height_ranges_m: BTreeMap<TileId, [f64; 2]>,
     /// Bytes of the slopes of all tiles above them, by which they are shaded where the eye is far.
-    above_bytes: u64,
+    pub(crate) above_bytes: u64,
 }
 
 impl FinestTiles {
@@ -28,8 +29,7 @@ impl FinestTiles {
         budget_bytes: u64,
         is_stopped: &dyn Fn() -> bool,
     ) -> Result<Self, ReplayError> {
-        let mut finest =
-            Self { buffers: BTreeMap::new(), height_ranges_m: BTreeMap::new(), above_bytes: 0 };
+        let mut finest = Self::default();
         let mut next = vec![(TileId::ROOT, SlopeChain::default())];
         let mut gpu_bytes = 0;
         while let Some((id, above)) = next.pop() {
@@ -51,7 +51,7 @@ impl FinestTiles {
                 });
             }
             if is_finest {
-                finest.buffers.insert(id, TileBuffers::new(gpu, &tile, Some(&above)));
+                finest.tiles.0.insert(id, TileBuffers::new(gpu, &tile, Some(&above)));
                 let range_m = tile.summary.map(|ground| (id, ground.height_range_m));
                 finest.height_ranges_m.extend(range_m);
             } else {
@@ -61,15 +61,6 @@ impl FinestTiles {
             }
         }
         Ok(finest)
-    }
-
-    /// Bytes of the slopes of all tiles above them.
-    pub(crate) fn above_bytes(&self) -> u64 {
-        self.above_bytes
-    }
-
-    pub(crate) fn buffers(&self) -> &BTreeMap<TileId, TileBuffers> {
-        &self.buffers
     }
 
     /// Chooses all of them.

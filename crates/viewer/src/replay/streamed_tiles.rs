@@ -7,7 +7,7 @@ use corniche_geom::TileId;
 use super::{ReplayError, elapsed::ms_since, frame_tiles::FrameTiles};
 use crate::{
     camera::Camera,
-    gpu::{Gpu, TileBuffers, tile_bytes},
+    gpu::{Gpu, ResidentTiles, tile_bytes},
     lod::Quality,
     stream::{StreamBudget, Streamer, TileFacts},
     tiles::{BlockingPackage, TileGeometry},
@@ -30,7 +30,7 @@ pub(crate) struct StreamedTiles<'a> {
     streamer: Streamer,
     /// Decoded, but not on the graphics card.
     decoded: BTreeMap<TileId, TileGeometry>,
-    buffers: BTreeMap<TileId, TileBuffers>,
+    pub(crate) tiles: ResidentTiles,
 }
 
 impl<'a> StreamedTiles<'a> {
@@ -45,12 +45,8 @@ impl<'a> StreamedTiles<'a> {
             budget,
             streamer: Streamer::new(budget),
             decoded: BTreeMap::new(),
-            buffers: BTreeMap::new(),
+            tiles: ResidentTiles::default(),
         }
-    }
-
-    pub(crate) fn buffers(&self) -> &BTreeMap<TileId, TileBuffers> {
-        &self.buffers
     }
 
     /// Prepares a frame seen from `camera`. Tiles for `ahead`, where the camera will be later, are loaded too.
@@ -94,17 +90,9 @@ impl<'a> StreamedTiles<'a> {
         frame.select_ms += ms_since(started);
 
         let started = Instant::now();
-        for id in &plan.evict {
-            self.buffers.remove(id);
-        }
-        for id in &plan.upload {
-            if let Some(tile) = self.decoded.remove(id) {
-                let above = id.parent().and_then(|parent| self.buffers.get(&parent));
-                let above = above.map(TileBuffers::slopes);
-                let buffers = TileBuffers::new(self.gpu, &tile, above);
-                self.buffers.insert(*id, buffers);
-            }
-        }
+        let upload: Vec<TileGeometry> =
+            plan.upload.iter().filter_map(|id| self.decoded.remove(id)).collect();
+        self.tiles.change(self.gpu, &plan.evict, &upload);
         frame.upload_ms += ms_since(started);
 
         let started = Instant::now();

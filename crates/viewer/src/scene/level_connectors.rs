@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
-use crate::tiles::{RoadEnd, RoadLook};
+use crate::tiles::{RoadEnd, RoadKind};
 
 /// Ends of one way in two tiles belong together if they are at most this share of the coarser tile apart: two of
 /// its cells, far more than simplification moves a line.
@@ -20,6 +19,8 @@ pub(crate) struct BorderTile<'a> {
     pub(crate) side_m: f64,
     /// How far its skirt hangs down, true metres.
     pub(crate) skirt_depth_m: f64,
+    /// Its reference point.
+    pub(crate) reference_m: [f64; 3],
     /// Where its roads meet its border.
     pub(crate) ends: &'a [RoadEnd],
 }
@@ -42,12 +43,8 @@ pub(crate) struct LevelConnector {
     pub(crate) fine: usize,
     /// Index of the coarser one.
     pub(crate) coarse: usize,
-    /// Functional road class.
-    pub(crate) class: FunctionalRoadClass,
-    /// What the road's tags say of its width.
-    pub(crate) own_width: OwnWidth,
     /// What the road is.
-    pub(crate) look: RoadLook,
+    pub(crate) kind: RoadKind,
     /// Its two ends in plan, working CRS: that in the finer tile, then that in the coarser one.
     pub(crate) ends_m: [[f64; 2]; 2],
     /// The true height of each end; the lowest, where only a range is known.
@@ -77,9 +74,7 @@ pub(crate) fn level_connectors(tiles: &[BorderTile<'_>]) -> Vec<LevelConnector> 
             found.push(LevelConnector {
                 fine,
                 coarse,
-                class: end.class,
-                own_width: end.own_width,
-                look: end.look,
+                kind: end.kind,
                 ends_m: [end.at_m, partner.at_m],
                 width_factor: end.width_factor,
                 heights_m: [low[0], high[0]],
@@ -87,7 +82,7 @@ pub(crate) fn level_connectors(tiles: &[BorderTile<'_>]) -> Vec<LevelConnector> 
             });
         }
     }
-    found.sort_by_key(|connector| (connector.fine, connector.class));
+    found.sort_by_key(|connector| (connector.fine, connector.kind.class));
     found
 }
 

@@ -1,5 +1,7 @@
 //! A way is connected to where it goes on in a tile of another level, and to nothing else.
 
+use corniche_roads::FunctionalRoadClass;
+
 use super::*;
 use crate::tiles::roads::ends::Side;
 
@@ -7,9 +9,7 @@ fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
     let class = FunctionalRoadClass::new(3).expect("a class");
     RoadEnd {
         way_id,
-        class,
-        own_width: OwnWidth::Unknown,
-        look: RoadLook::Plain,
+        kind: RoadKind::plain(class),
         side,
         at_m,
         height_range_m: [height_m; 2],
@@ -21,8 +21,20 @@ fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
 fn check(coarse: &[RoadEnd], fine: &[RoadEnd], expected: &[[[f64; 2]; 2]]) {
     let id = |z, x, y| TileId::new(z, x, y).expect("a tile");
     let tiles = [
-        BorderTile { id: id(1, 0, 0), side_m: 200.0, skirt_depth_m: 5.0, ends: coarse },
-        BorderTile { id: id(2, 2, 0), side_m: 100.0, skirt_depth_m: 3.0, ends: fine },
+        BorderTile {
+            id: id(1, 0, 0),
+            side_m: 200.0,
+            skirt_depth_m: 5.0,
+            reference_m: [0.0; 3],
+            ends: coarse,
+        },
+        BorderTile {
+            id: id(2, 2, 0),
+            side_m: 100.0,
+            skirt_depth_m: 3.0,
+            reference_m: [0.0; 3],
+            ends: fine,
+        },
     ];
     let found: Vec<_> = level_connectors(&tiles).iter().map(|connector| connector.ends_m).collect();
     assert_eq!(found, expected);
@@ -53,8 +65,20 @@ fn a_connector_reaches_over_both_heights_and_the_deeper_skirt() {
     let coarse = [end(7, Side::East, [200.0, 150.0], 10.0)];
     let fine = [end(7, Side::West, [200.0, 150.0], 12.0)];
     let tiles = [
-        BorderTile { id: id(1, 0, 0), side_m: 200.0, skirt_depth_m: 5.0, ends: &coarse },
-        BorderTile { id: id(2, 2, 0), side_m: 100.0, skirt_depth_m: 3.0, ends: &fine },
+        BorderTile {
+            id: id(1, 0, 0),
+            side_m: 200.0,
+            skirt_depth_m: 5.0,
+            reference_m: [0.0; 3],
+            ends: &coarse,
+        },
+        BorderTile {
+            id: id(2, 2, 0),
+            side_m: 100.0,
+            skirt_depth_m: 3.0,
+            reference_m: [0.0; 3],
+            ends: &fine,
+        },
     ];
     let found = level_connectors(&tiles);
     assert_eq!((found[0].fine, found[0].coarse), (1, 0));

@@ -2,27 +2,86 @@
 
 use std::{fmt, marker::PhantomData};
 
-use bytemuck::Pod;
+use bytemuck::{Pod, Zeroable as _};
 use serde::{
     Deserializer, Serializer,
     de::{Error, Visitor},
 };
 
 /// What stands in a block as words of fixed length.
-pub(crate) trait Recorded: Sized {
+pub(crate) trait Recorded: Copy + Default {
     /// Its words.
-    type Words: Pod;
+    type Words: Pod + AsMut<[u32]>;
+
+    /// Passes all fields through words; `None` if nothing has those that are read.
+    fn pass(&mut self, through: &mut Passage<'_>) -> Option<()>;
 
     /// All of it, as words.
-    fn words(&self) -> Self::Words;
+    fn words(&self) -> Self::Words {
+        let mut words = Self::Words::zeroed();
+        let mut piece = *self;
+        let _ = piece.pass(&mut Passage::new(words.as_mut(), false));
+        words
+    }
 
     /// What has these words; `None` if nothing has.
-    fn of_words(words: &Self::Words) -> Option<Self>;
+    fn of_words(mut words: Self::Words) -> Option<Self> {
+        let mut read = Self::default();
+        read.pass(&mut Passage::new(words.as_mut(), true))?;
+        Some(read)
+    }
+}
+
+/// Words that fields are written to, or read from, one after the other. The last one holds bits.
+pub(crate) struct Passage<'a> {
+    words: &'a mut [u32],
+    is_read: bool,
+    used_words: usize,
+    used_bits: u32,
+}
+
+impl<'a> Passage<'a> {
+    fn new(words: &'a mut [u32], is_read: bool) -> Self {
+        Self { words, is_read, used_words: 0, used_bits: 0 }
+    }
+
+    /// Writes a word, or reads another.
+    pub(crate) fn word(&mut self, word: u32) -> u32 {
+        let place = &mut self.words[self.used_words];
+        self.used_words += 1;
+        if !self.is_read {
+            *place = word;
+        }
+        *place
+    }
+
+    /// The same with so many bits of the last word.
+    pub(crate) fn bits(&mut self, bits: u32, count: u32) -> u32 {
+        let [.., last] = &mut *self.words else { return bits };
+        if !self.is_read {
+            *last |= bits << self.used_bits;
+        }
+        let passed = *last >> self.used_bits & ((1 << count) - 1);
+        self.used_bits += count;
+        passed
+    }
+
+    pub(crate) fn flags(&mut self, flags: &mut [bool]) {
+        for flag in flags {
+            *flag = self.bits(u32::from(*flag), 1) == 1;
+        }
+    }
+
+    pub(crate) fn numbers(&mut self, numbers: &mut [f32]) {
+        for number in numbers {
+            *number = f32::from_bits(self.word(number.to_bits()));
+        }
+    }
 }
 
 /// Lists of plain values.
 pub(crate) mod plain {
-    use super::{Block, Deserializer, Pod, Serializer};
+    use super::{Block, Deserializer, PhantomData, Pod, Serializer};
 
     pub(crate) fn serialize<T: Pod, S: Serializer>(
         list: &[T],
@@ -34,13 +93,13 @@ pub(crate) mod plain {
     pub(crate) fn deserialize<'de, T: Pod, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Vec<T>, D::Error> {
-        deserializer.deserialize_byte_buf(Block::new())
+        deserializer.deserialize_byte_buf(Block(PhantomData))
     }
 }
 
 /// Lists of what is [`Recorded`].
 pub(crate) mod records {
-    use super::{Deserializer, Recorded, Records, Serializer, plain};
+    use super::{Deserializer, Error, Recorded, Serializer, plain};
 
     pub(crate) fn serialize<T: Recorded, S: Serializer>(
         list: &[T],
@@ -53,7 +112,9 @@ pub(crate) mod records {
     pub(crate) fn deserialize<'de, T: Recorded, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Vec<T>, D::Error> {
-        deserializer.deserialize_byte_buf(Records::new())
+        let words: Vec<T::Words> = plain::deserialize(deserializer)?;
+        let list: Option<Vec<T>> = words.into_iter().map(T::of_words).collect();
+        list.ok_or_else(|| D::Error::custom("a record of nothing"))
     }
 }
 
@@ -86,12 +147,6 @@ pub(crate) mod index_lists {
 /// Reads a block of plain values.
 struct Block<T>(PhantomData<T>);
 
-impl<T> Block<T> {
-    fn new() -> Self {
-        Self(PhantomData)
-    }
-}
-
 impl<T: Pod> Visitor<'_> for Block<T> {
     type Value = Vec<T>;
 
@@ -108,35 +163,5 @@ impl<T: Pod> Visitor<'_> for Block<T> {
             Ok(list) => list.to_vec(),
             Err(_) => bytemuck::pod_collect_to_vec(bytes),
         })
-    }
-}
-
-/// Reads a block of records.
-struct Records<T>(PhantomData<T>);
-
-impl<T> Records<T> {
-    fn new() -> Self {
-        Self(PhantomData)
-    }
-}
-
-impl<T: Recorded> Visitor<'_> for Records<T> {
-    type Value = Vec<T>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "records of {} bytes each", size_of::<T::Words>())
-    }
-
-    fn visit_bytes<E: Error>(self, bytes: &[u8]) -> Result<Vec<T>, E> {
-        let length = size_of::<T::Words>();
-        if !bytes.len().is_multiple_of(length) {
-            return Err(E::invalid_length(bytes.len(), &self));
-        }
-        let mut list = Vec::with_capacity(bytes.len() / length);
-        for record in bytes.chunks_exact(length) {
-            let words = bytemuck::pod_read_unaligned(record);
-            list.push(T::of_words(&words).ok_or_else(|| E::custom("a record of nothing"))?);
-        }
-        Ok(list)
     }
 }

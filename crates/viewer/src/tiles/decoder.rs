@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     LayerLine, LineLayer, LineMethods, LoadTileError, Overlays, PhotoImage, PlanScale,
-    TileGeometry, TileLines, geometry::LineGround,
+    TileGeometry, TileLines, TileSurface,
 };
 use crate::options::{Mapping, RoadMethod};
 
@@ -31,26 +31,14 @@ struct TooManyOverlays {
 /// What every picture needs of a tile.
 const GROUND: Sections = Sections::TERRAIN.and(Sections::RELIEF);
 
-/// Whether a layer of tiles is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-enum Layer {
-    Read,
-    LeftOut,
-}
-
-impl Layer {
-    fn of(is_shown: bool) -> Self {
-        if is_shown { Self::Read } else { Self::LeftOut }
-    }
-}
+const BOUNDARIES: Sections = Sections::lines(ClassedLayer::Boundaries);
 
 /// What is read of tiles. It needs no package, only its manifest: tiles may be decoded in other threads, or in the workers of a page.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct TileDecoder {
     sections: Sections,
-    photos: Layer,
-    areas: Layer,
-    boundaries: Layer,
+    /// Which of photos, areas and boundaries are read.
+    layers: Sections,
     mapping: Mapping,
     /// They do not go to other instances.
     #[serde(skip)]
@@ -62,9 +50,7 @@ impl Default for TileDecoder {
     fn default() -> Self {
         Self {
             sections: GROUND | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES,
-            photos: Layer::Read,
-            areas: Layer::Read,
-            boundaries: Layer::Read,
+            layers: Sections::PHOTO | Sections::AREAS | BOUNDARIES,
             mapping: Mapping::default(),
             overlays: Arc::default(),
         }
@@ -93,12 +79,11 @@ impl TileDecoder {
     /// Reads photos, areas and boundaries only where the style shows them.
     #[must_use]
     pub fn with_layers_of(self, style: &Style) -> Self {
-        Self {
-            photos: Layer::of(style.photo > 0.0),
-            areas: Layer::of(style.has_areas()),
-            boundaries: Layer::of(style.has_boundaries()),
-            ..self
-        }
+        let of = |is_shown, layer| if is_shown { layer } else { Sections::NONE };
+        let layers = of(style.photo > 0.0, Sections::PHOTO)
+            | of(style.has_areas(), Sections::AREAS)
+            | of(style.has_boundaries(), BOUNDARIES);
+        Self { layers, ..self }
     }
 
     /// Lays roads as geometry on the ground, or not.
@@ -116,15 +101,7 @@ impl TileDecoder {
     /// The sections that it reads.
     #[must_use]
     pub fn sections(&self) -> Sections {
-        let of_layer = |layer: Layer, sections| match layer {
-            Layer::Read => sections,
-            Layer::LeftOut => Sections::NONE,
-        };
-        self.sections
-            | Sections::SPANS
-            | of_layer(self.photos, Sections::PHOTO)
-            | of_layer(self.areas, Sections::AREAS)
-            | of_layer(self.boundaries, Sections::lines(ClassedLayer::Boundaries))
+        self.sections | Sections::SPANS | self.layers
     }
 
     /// The methods for which lines are prepared: those of the roads that are read.
@@ -179,16 +156,9 @@ impl TileDecoder {
         // The manifest has a record for every level of the frame: the reader of manifests checks that.
         let margin_m = manifest.levels[usize::from(id.z())].width_margin_m;
         let scale = PlanScale::of_tile(coordinates, frame.tile_bounds(id), *point_scale);
-        let on = LineGround {
-            terrain: decoded.terrain.as_ref(),
-            frame,
-            quantum_m,
-            scale: &scale,
-            vertical_scale: *point_scale,
-        };
         let spans = self.spans(payload, id, manifest)?;
         let spans = spans.as_deref();
-        let tile = TileGeometry::from_payload(
+        let mut tile = TileGeometry::from_payload(
             &decoded,
             spans,
             frame,
@@ -197,29 +167,31 @@ impl TileDecoder {
             self.mapping,
         )?;
         let methods = self.line_methods();
-        let boundaries = match self.boundaries {
-            Layer::Read => decode_lines(payload, id, ClassedLayer::Boundaries)?,
-            Layer::LeftOut => Vec::new(),
+        let boundaries = if self.layers.contains(BOUNDARIES) {
+            decode_lines(payload, id, ClassedLayer::Boundaries)?
+        } else {
+            Vec::new()
         };
         let boundaries: Vec<LayerLine> = boundaries.into_iter().map(LayerLine::from).collect();
-        let tile = tile.with_lines(LineLayer::Boundaries, &boundaries, &on, methods)?;
         let margin = (margin_m / frame.lattice_step_m()).ceil() as i64;
         let overlays = self.overlays.near(id, frame, margin);
-        let tile = tile.with_lines(LineLayer::Overlays, &overlays, &on, methods);
-        let tile = tile.map_err(|source| TooManyOverlays {
-            files: self.overlays.names_of(&overlays),
-            source,
-        })?;
-        let areas = match self.areas {
-            Layer::Read => decode_areas(payload, id, frame)?,
-            Layer::LeftOut => Vec::new(),
-        };
-        let tile = tile.with_areas(&areas, frame)?;
-        let photo = match self.photos {
-            Layer::Read => decode_photo(payload, id)?,
-            Layer::LeftOut => None,
-        };
-        Ok(TileGeometry { photo: photo.map(PhotoImage::new), ..tile })
+        let has_lines = !boundaries.is_empty() || !overlays.is_empty();
+        if let Some(terrain) = decoded.terrain.filter(|_| has_lines) {
+            let surface = TileSurface::new(&tile, &terrain.tin, manifest);
+            tile.lines.set(LineLayer::Boundaries, surface.lay(&boundaries, methods)?);
+            let overlays = surface.lay(&overlays, methods).map_err(|source| TooManyOverlays {
+                files: self.overlays.names_of(&overlays),
+                source,
+            })?;
+            tile.lines.set(LineLayer::Overlays, overlays);
+        }
+        if self.layers.contains(Sections::AREAS) {
+            tile = tile.with_areas(&decode_areas(payload, id, frame)?, frame)?;
+        }
+        if self.layers.contains(Sections::PHOTO) {
+            tile.photo = decode_photo(payload, id)?.map(PhotoImage::new);
+        }
+        Ok(tile)
     }
 }
 

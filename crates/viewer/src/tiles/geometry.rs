@@ -1,18 +1,15 @@
 //! A decoded tile that is ready for the graphics card.
 
-use corniche_geom::{Bounds, GridFrame, MOST_TILE_STEPS, TileId, TooMuchWork, Work, barycentric};
-use corniche_roads::{FunctionalRoadClass, OwnWidth};
+use corniche_geom::{Bounds, GridFrame, MOST_TILE_STEPS, TileId, Work, barycentric};
 use corniche_styles::OwnWidths;
 use corniche_tileset::{AreaRecord, SpanRun, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    AreaVolumes, BadAreas, BadRoads, DeckLine, DeckPieces, GroundMesh, InNet, LayerLine, LineLayer,
-    LineLayers, LineMethods, OffGround, PhotoImage, PlanScale, RoadSegments, RoadVolumes,
-    ShadingSlopes, TileLines,
-    line_layers::{TileGround, lay},
-    relief::Relief,
+    AreaVolumes, BadAreas, BadRoads, DeckLine, DeckPieces, GroundMesh, InNet, LineLayers,
+    OffGround, PhotoImage, PlanScale, RoadKind, RoadSegments, RoadVolumes, ShadingSlopes,
+    TileLines, relief::Relief,
 };
 use crate::{lod::GroundSummary, options::Mapping};
 
@@ -56,10 +53,8 @@ pub struct TileGeometry {
 pub(crate) struct WideWay {
     /// OSM's id of the way.
     pub(crate) way_id: i64,
-    /// Functional road class.
-    pub(crate) class: FunctionalRoadClass,
-    /// What its tags say.
-    pub(crate) own_width: OwnWidth,
+    /// What it is.
+    pub(crate) kind: RoadKind,
 }
 
 /// A decoded tile did not come whole from where it was decoded.
@@ -74,16 +69,14 @@ pub struct TransferError {
 fn wide_ways(lines: &TileLines) -> Vec<WideWay> {
     // No style has wider lanes.
     let widest = OwnWidths { lane_m: Some(OwnWidths::WIDEST_LANE_M) };
-    let of_ground = lines.ground.iter().map(|line| (line.way_id, line.class, line.own_width));
-    let in_plan = lines.plan.iter().map(|line| (line.way_id, line.class, line.own_width));
-    let mut ways: Vec<WideWay> = of_ground
-        .chain(in_plan)
-        .filter(|(.., own)| {
-            widest.asked_m(*own).is_some_and(|asked_m| asked_m > OwnWidths::WIDEST_M)
-        })
-        .map(|(way_id, class, own_width)| WideWay { way_id, class, own_width })
-        .collect();
-    ways.sort_by_key(|way| (way.way_id, way.class));
+    let is_wide = |way: &WideWay| {
+        widest.asked_m(way.kind.own_width).is_some_and(|asked_m| asked_m > OwnWidths::WIDEST_M)
+    };
+    let of_ground =
+        lines.ground.iter().map(|line| WideWay { way_id: line.way_id, kind: line.kind });
+    let in_plan = lines.plan.iter().map(|line| WideWay { way_id: line.way_id, kind: line.kind });
+    let mut ways: Vec<WideWay> = of_ground.chain(in_plan).filter(is_wide).collect();
+    ways.sort_by_key(|way| (way.way_id, way.kind.class));
     ways.dedup();
     ways
 }
@@ -228,34 +221,6 @@ impl TileGeometry {
         Ok(Self { areas, ..self })
     }
 
-    /// The same tile with these lines of a layer, laid on the ground that it was made of; an error when that takes too much work.
-    pub(crate) fn with_lines(
-        mut self,
-        layer: LineLayer,
-        lines: &[LayerLine],
-        on: &LineGround<'_>,
-        methods: LineMethods,
-    ) -> Result<Self, TooMuchWork> {
-        let LineGround { terrain, frame, quantum_m, scale, vertical_scale } = *on;
-        if lines.is_empty() {
-            return Ok(self);
-        }
-        if let Some(surface) = surface(self.id, terrain, frame, quantum_m) {
-            let ground = TileGround {
-                id: self.id,
-                surface: &surface,
-                frame,
-                reference_m: self.reference_m,
-                width_margin_m: self.width_margin_m,
-                scale,
-                vertical_scale,
-                most_steps: MOST_TILE_STEPS,
-            };
-            self.lines.set(layer, lay(lines, &ground, methods)?);
-        }
-        Ok(self)
-    }
-
     /// The tile as bytes for another instance of this program, of the same version: a worker of a page decodes tiles, and the page draws
     /// them.
     ///
@@ -304,7 +269,7 @@ impl TileGeometry {
     #[must_use]
     pub fn ground_height_m(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let at = [x - self.reference_m[0], y - self.reference_m[1]];
-        self.ground.triangle_grid().at(at).iter().find_map(|triangle| {
+        self.ground.triangle_grid.at(at).iter().find_map(|triangle| {
             let [a, b, c] = self.ground.corners(*triangle);
             let weights = barycentric(at, [a[0], a[1]], [b[0], b[1]], [c[0], c[1]]);
             // Positions were rounded to f32. With a slack of a millionth no position falls between two triangles.
@@ -319,18 +284,6 @@ impl TileGeometry {
 pub(crate) fn plan_around([x, y, _]: [f64; 3], size_m: [f64; 2]) -> Bounds {
     let [east_m, north_m] = size_m.map(|side_m| side_m / 2.0);
     Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m }
-}
-
-/// What lines of a tile are laid on.
-#[derive(Clone, Copy)]
-pub(crate) struct LineGround<'a> {
-    pub(crate) terrain: Option<&'a Terrain>,
-    pub(crate) frame: &'a GridFrame,
-    /// The height of one step of the TIN's heights.
-    pub(crate) quantum_m: f64,
-    pub(crate) scale: &'a PlanScale,
-    /// World height of a metre of true height without exaggeration.
-    pub(crate) vertical_scale: f64,
 }
 
 /// The ground of a tile on the lattice, as roads need it.

@@ -36,7 +36,7 @@ pub(crate) struct GroundMesh {
     pub(crate) surface_indices: usize,
     /// How many of the indices are ground or skirts.
     pub(crate) skirt_indices: usize,
-    triangle_grid: TriangleGrid,
+    pub(crate) triangle_grid: TriangleGrid,
 }
 
 impl GroundMesh {
@@ -84,11 +84,6 @@ impl GroundMesh {
         let surface_indices = indices.len();
         let skirt_indices = surface_indices;
         Self { vertices, indices, surface_indices, skirt_indices, triangle_grid }
-    }
-
-    /// The grid that says which triangles of the ground are near a place.
-    pub(crate) fn triangle_grid(&self) -> &TriangleGrid {
-        &self.triangle_grid
     }
 
     /// The corners of a triangle of the ground, relative to the tile's reference point; heights are true.

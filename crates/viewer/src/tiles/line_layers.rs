@@ -12,8 +12,7 @@ use corniche_geom::LatticePoint;
 use corniche_tileset::LineRecord;
 use serde::{Deserialize, Serialize};
 
-pub(crate) use self::lay::{TileGround, lay};
-pub use self::overlays::Overlays;
+pub use self::{lay::TileSurface, overlays::Overlays};
 use super::{RoadSegments, RoadVolumes};
 
 /// The layers of lines, from the lowest to the highest.

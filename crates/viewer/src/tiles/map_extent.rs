@@ -134,12 +134,11 @@ fn densest_cluster(pieces: Vec<Piece>) -> Vec<Piece> {
 
 fn pieces(tile: &TileGeometry) -> impl Iterator<Item = Piece> {
     let [x, y, _] = tile.reference_m;
-    let on_ground =
-        tile.roads.all().iter().map(|piece| {
-            (part_of(piece.start_in_tile, piece.end_in_tile, piece.shares), piece.class)
-        });
+    let on_ground = tile.roads.all().iter().map(|piece| {
+        (part_of(piece.start_in_tile, piece.end_in_tile, piece.shares), piece.kind.class)
+    });
     let in_plan = tile.volumes.all().iter().map(|volume| {
-        (part_of(volume.start_in_tile, volume.end_in_tile, [0.0, 1.0]), volume.class)
+        (part_of(volume.start_in_tile, volume.end_in_tile, [0.0, 1.0]), volume.kind.class)
     });
     on_ground.chain(in_plan).map(move |(ends, class)| Piece {
         ends: ends.map(|[east, north]| [x + east, y + north]),

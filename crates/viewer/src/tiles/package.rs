@@ -1,21 +1,16 @@
 //! The tiles of a package are loaded from any source of bytes, without blocking a thread.
 
-use std::{collections::BTreeSet, sync::Arc};
+use std::collections::BTreeSet;
 
 use corniche_geom::{GridFrame, TileId};
-use corniche_styles::Style;
 use corniche_tileset::{
     ByteSource, Manifest, OpenError, Package, Sections, decode, terrain_summary,
 };
 
 use super::{
-    LoadTileError, MapPackage, Overlays, ShadingSlopes, TileCatalog, TileDecoder, TileGeometry,
-    TileLines,
+    LoadTileError, MapPackage, ShadingSlopes, TileCatalog, TileDecoder, TileGeometry, TileLines,
 };
-use crate::{
-    lod::GroundSummary,
-    options::{Mapping, RoadMethod},
-};
+use crate::lod::GroundSummary;
 
 /// What summaries and slopes are read from.
 const GROUND_ALONE: Sections = Sections::TERRAIN.and(Sections::RELIEF).and(Sections::SPANS);
@@ -24,7 +19,8 @@ const GROUND_ALONE: Sections = Sections::TERRAIN.and(Sections::RELIEF).and(Secti
 /// [`PackageSource`](super::PackageSource) is a package in a file, for threads that may wait.
 #[derive(Debug)]
 pub struct PackageTiles<S> {
-    package: Package<S>,
+    /// The package.
+    pub package: Package<S>,
     /// Tiles of the package and all tiles above them.
     tiles: BTreeSet<TileId>,
     decoder: TileDecoder,
@@ -46,35 +42,17 @@ impl<S: ByteSource> PackageTiles<S> {
         Ok(Self { package, tiles, decoder: TileDecoder::default() })
     }
 
-    /// See [`TileDecoder::for_method`].
+    /// Reads of tiles what this decoder does; at first all that a picture may show.
     #[must_use]
-    pub fn for_method(self, method: RoadMethod) -> Self {
-        Self { decoder: self.decoder.for_method(method), ..self }
-    }
-
-    /// See [`TileDecoder::for_look`].
-    #[must_use]
-    pub fn for_look(self, method: RoadMethod, style: &Style) -> Self {
-        Self { decoder: self.decoder.for_look(method, style), ..self }
-    }
-
-    /// See [`TileDecoder::with_mapping`].
-    #[must_use]
-    pub fn with_mapping(self, mapping: Mapping) -> Self {
-        Self { decoder: self.decoder.with_mapping(mapping), ..self }
-    }
-
-    /// Lays lines of people's own files on the tiles.
-    #[must_use]
-    pub fn with_overlays(self, overlays: Arc<Overlays>) -> Self {
-        Self { decoder: self.decoder.with_overlays(overlays), ..self }
+    pub fn with_decoder(self, decoder: TileDecoder) -> Self {
+        Self { decoder, ..self }
     }
 
     /// Reads errors and heights of a tile that exists; `None` without ground.
     ///
     /// # Errors
     /// When it cannot be read or is damaged.
-    pub async fn summary(&self, id: TileId) -> Result<Option<GroundSummary>, LoadTileError> {
+    pub async fn summary_of(&self, id: TileId) -> Result<Option<GroundSummary>, LoadTileError> {
         let bytes = self.payload_for(id, GROUND_ALONE).await?;
         let Some(bytes) = bytes else { return Ok(None) };
         self.summary_in(&bytes, id)
@@ -103,7 +81,7 @@ impl<S: ByteSource> PackageTiles<S> {
     ///
     /// # Errors
     /// When it cannot be read or is damaged.
-    pub async fn load_slopes(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
+    pub async fn slopes_of(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         let failed = |source| LoadTileError { id, source };
         let quantum_m = self.manifest().vertical.quantum_m;
         let bytes = self.payload_for(id, GROUND_ALONE).await?;
@@ -125,7 +103,7 @@ impl<S: ByteSource> PackageTiles<S> {
     ///
     /// # Errors
     /// When it cannot be read or is damaged.
-    pub async fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
+    pub async fn tile(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         let bytes = self.payload_for(id, self.decoder.sections()).await?;
         self.decoder.tile(bytes.as_deref(), id, self.manifest())
     }
@@ -148,12 +126,6 @@ impl<S: ByteSource> PackageTiles<S> {
     ) -> Result<Option<Vec<u8>>, LoadTileError> {
         let bytes = self.package.tile_for(id, wanted).await;
         bytes.map_err(|error| LoadTileError { id, source: error.into() })
-    }
-
-    /// The package.
-    #[must_use]
-    pub fn package(&self) -> &Package<S> {
-        &self.package
     }
 }
 

@@ -31,7 +31,7 @@ pub use self::{
     decks::{DeckPiece, DeckPieces},
     lines::{BadRoads, GroundLine, PlanLine, TileLines},
     list::RoadList,
-    look::RoadLook,
+    look::{RoadKind, RoadLook},
     segments::{RoadSegment, RoadSegments},
     volumes::{RoadVolume, RoadVolumes},
 };

@@ -3,7 +3,7 @@
 #![expect(clippy::float_cmp, reason = "these numbers are exact")]
 
 use corniche_geom::{Bounds, Work};
-use corniche_roads::{FunctionalRoadClass, OwnWidth};
+use corniche_roads::FunctionalRoadClass;
 
 use super::{
     super::PlanScale,
@@ -65,9 +65,7 @@ fn pieces_of_a_segment_have_caps_at_its_ends_only() {
 fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_ground() {
     let line = |number, from: [f64; 2], range_m| PlanLine {
         way_id: 1,
-        class: class(number),
-        own_width: OwnWidth::Unknown,
-        look: RoadLook::Plain,
+        kind: RoadKind::plain(class(number)),
         points_m: vec![from, [30.0, 20.0]],
         ground_range_m: vec![range_m],
         dashes: None,
@@ -110,13 +108,10 @@ fn a_line_on_the_ground_ends_on_the_border_it_was_cut_at() {
 fn a_line_in_plan_crosses_the_border_where_it_passes_to_the_other_side() {
     let check = |points_m: Vec<[f64; 2]>, expected: &[(Side, [f64; 2])]| {
         let ground_range_m = vec![[1.0, 2.0]; points_m.len() - 1];
-        let own_width = OwnWidth::Unknown;
         let line = PlanLine {
             dashes: None,
             way_id: 1,
-            class: class(4),
-            own_width,
-            look: RoadLook::Plain,
+            kind: RoadKind::plain(class(4)),
             points_m,
             ground_range_m,
         };

@@ -15,10 +15,10 @@ use super::blocks;
 pub(crate) struct ShadingSlopes {
     /// Bits of half-precision numbers.
     #[serde(with = "blocks::plain")]
-    texels: Vec<[u16; 2]>,
+    pub(crate) texels: Vec<[u16; 2]>,
     /// 255 where a node is water, else 0; empty without water.
     #[serde(with = "blocks::plain")]
-    water: Vec<u8>,
+    pub(crate) water: Vec<u8>,
 }
 
 /// Steeper slopes are cut: half precision ends at 65504.
@@ -38,16 +38,6 @@ impl ShadingSlopes {
             texels,
             water: water.iter().map(|&is_water| if is_water { 255 } else { 0 }).collect(),
         }
-    }
-
-    /// Row by row, 255 where a node is water, else 0; empty without water.
-    pub(crate) fn water(&self) -> &[u8] {
-        &self.water
-    }
-
-    /// Row by row, as bits of half-precision numbers.
-    pub(crate) fn texels(&self) -> &[[u16; 2]] {
-        &self.texels
     }
 }
 

@@ -1,77 +1,35 @@
 //! The ground of a tile that is shown, on which lines can be laid later.
 
-use corniche_geom::{GridFrame, LatticePoint, MOST_TILE_STEPS, TileId, TooMuchWork};
+use corniche_geom::{GridFrame, MOST_TILE_STEPS};
 use corniche_tileset::Manifest;
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
-use super::{
-    LayerLine, LineMethods, PlanScale, TileGeometry, TileLayer,
-    line_layers::{TileGround, lay},
-};
-
-/// The ground of a tile that is shown, on which lines can be laid at any time.
-///
-/// It is made of the tile's triangles as they are drawn: their corners are nodes of the tile's raster, and their heights are whole steps,
-/// so rounding gives the very TIN of the package back.
-pub struct TileSurface {
-    id: TileId,
-    surface: Surface,
-    reference_m: [f64; 3],
-    width_margin_m: f64,
-    scale: PlanScale,
-    vertical_scale: f64,
-}
+use super::{PlanScale, TileGeometry, TileSurface};
 
 impl TileSurface {
-    /// The ground of a tile of a package; `None` if it has none.
+    /// The ground of a tile that is shown; `None` if it has none.
+    ///
+    /// It is made of the tile's triangles as they are drawn: their corners are nodes of the tile's raster, and their heights are whole steps,
+    /// so rounding gives the very TIN of the package back.
     #[must_use]
     pub fn of(tile: &TileGeometry, manifest: &Manifest) -> Option<Self> {
-        let frame = &manifest.frame;
-        let quantum_m = manifest.vertical.quantum_m;
-        let tin = tin_of(tile, frame, quantum_m)?;
-        let scale = PlanScale::of_tile(
-            &manifest.coordinates,
-            frame.tile_bounds(tile.id),
-            manifest.point_scale,
-        );
-        Some(Self {
+        let tin = tin_of(tile, &manifest.frame, manifest.vertical.quantum_m)?;
+        Some(Self::new(tile, &tin, manifest))
+    }
+
+    /// The ground of a tile of a package, whose TIN is this one.
+    pub(crate) fn new(tile: &TileGeometry, tin: &Tin, manifest: &Manifest) -> Self {
+        let Manifest { frame, coordinates, point_scale, vertical, .. } = manifest;
+        Self {
             id: tile.id,
-            surface: Surface::new(&tin, Placement::of_tile(frame, tile.id, quantum_m)),
+            surface: Surface::new(tin, Placement::of_tile(frame, tile.id, vertical.quantum_m)),
+            frame: *frame,
             reference_m: tile.reference_m,
             width_margin_m: tile.width_margin_m,
-            scale,
-            vertical_scale: manifest.point_scale,
-        })
-    }
-
-    /// True height of the ground at a point; `None` where there is none.
-    #[must_use]
-    pub fn height_m(&self, point: LatticePoint) -> Option<f64> {
-        let triangle = self.surface.locate(point)?;
-        Some(self.surface.height_at_point_m(triangle, point))
-    }
-
-    /// Lines on this ground.
-    ///
-    /// # Errors
-    /// When they cross so many triangles that it would take too long.
-    pub fn lay(
-        &self,
-        lines: &[LayerLine],
-        frame: &GridFrame,
-        methods: LineMethods,
-    ) -> Result<TileLayer, TooMuchWork> {
-        let on = TileGround {
-            id: self.id,
-            surface: &self.surface,
-            frame,
-            reference_m: self.reference_m,
-            width_margin_m: self.width_margin_m,
-            scale: &self.scale,
-            vertical_scale: self.vertical_scale,
+            scale: PlanScale::of_tile(coordinates, frame.tile_bounds(tile.id), *point_scale),
+            vertical_scale: *point_scale,
             most_steps: MOST_TILE_STEPS,
-        };
-        lay(lines, &on, methods)
+        }
     }
 }
 

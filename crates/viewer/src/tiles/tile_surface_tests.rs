@@ -4,7 +4,7 @@ use corniche_testing::package::written;
 use corniche_tileset::{FilePackage, Sections};
 
 use super::*;
-use crate::tiles::{PackageSource, TileSource as _};
+use crate::tiles::{LayerLine, LineMethods, PackageSource, TileSource as _};
 
 /// Vertices and triangles come back as the package has them.
 #[test]
@@ -48,7 +48,7 @@ fn a_drawn_line_lies_on_the_ground_of_every_level() {
     for id in package.tile_ids().unwrap() {
         let tile = source.load(id).unwrap().without_roads();
         let Some(surface) = TileSurface::of(&tile, manifest) else { continue };
-        let laid = surface.lay(&lines, &manifest.frame, LineMethods::Geometry).unwrap();
+        let laid = surface.lay(&lines, LineMethods::Geometry).unwrap();
         for segment in laid.segments.all() {
             let along = |axis: usize| {
                 let [from, to] = [segment.start_in_tile[axis], segment.end_in_tile[axis]];

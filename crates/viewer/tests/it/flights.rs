@@ -10,7 +10,7 @@ use crate::support::{
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions, Wireframe,
+    FrameView, RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     gpu::{DrawTile, PassTimer, Renderer, Targets, TileBuffers, tile_bytes},
     tiles::TileSource,
@@ -43,7 +43,7 @@ fn passes_take_some_time_and_no_more_than_the_frame() {
     let orientation = Orientation { heading_deg: 0.0, pitch_deg: 30.0 };
     let target = DVec3::new(x, y, height_m(x, y));
     let camera = Camera::look_at(target, 40_000.0, orientation, [640, 480]);
-    let targets = Targets::new(&gpu, camera.size_px(), 1).unwrap();
+    let targets = Targets::new(&gpu, camera.size_px, 1).unwrap();
     let style = Style::road_atlas();
     let renderer = Renderer::new(&gpu);
     let mut frame = |method| {
@@ -57,7 +57,7 @@ fn passes_take_some_time_and_no_more_than_the_frame() {
             wall_m: 0.0,
             cell_px: f64::INFINITY,
             latitude_deg: 47.0,
-            wireframe: Wireframe::Hidden,
+            is_wireframe: false,
         };
         let started = Instant::now();
         renderer.draw_timed(&gpu, &view, &tiles, &targets, Some(&mut timer));

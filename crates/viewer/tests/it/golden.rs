@@ -10,7 +10,7 @@ use crate::support;
 use corniche_styles::{RoadBands, Style};
 use corniche_testing::pictures::{Golden, is_blessing};
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions, Wireframe,
+    FrameView, RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     gpu::{Gpu, Picture, Renderer, Targets},
 };
@@ -31,11 +31,11 @@ fn golden() -> Golden {
 /// The software adapter, or `None` and a line on the terminal.
 fn software() -> Option<Gpu> {
     let gpu = gpu()?;
-    let is_pinned = ["llvmpipe", "vulkan"].iter().all(|part| gpu.adapter_name().contains(part));
+    let is_pinned = ["llvmpipe", "vulkan"].iter().all(|part| gpu.adapter_name.contains(part));
     if !is_pinned {
         corniche_testing::skip(&format!(
             "these pictures are llvmpipe's, not {}'s",
-            gpu.adapter_name()
+            &gpu.adapter_name
         ));
     }
     is_pinned.then_some(gpu)
@@ -78,7 +78,7 @@ fn image(gpu: &Gpu, picture: &Picture) -> RgbaImage {
 fn a_junction_looks_as_it_did() {
     let Some(gpu) = software() else { return };
     for (method, name) in METHODS.into_iter().zip(["junction-geo", "junction-sv"]) {
-        golden().check(name, &image(&gpu, near(&gpu, &near_style(), method).picture()));
+        golden().check(name, &image(&gpu, &near(&gpu, &near_style(), method).picture));
     }
 }
 
@@ -89,7 +89,7 @@ fn far_ground_and_thin_roads_fade_into_the_haze_as_they_did() {
     let view = view(&camera, &style, RoadMethod::ShadowVolumes);
     let scene = one_tile(16, hills, &junction(), style.clone());
     let targets = scene.draw_view(&gpu, &view, 2);
-    golden().check("haze-sv-2-samples", &image(&gpu, targets.picture()));
+    golden().check("haze-sv-2-samples", &image(&gpu, &targets.picture));
 }
 
 #[test]
@@ -98,8 +98,8 @@ fn a_wireframe_looks_as_it_did() {
     let (camera, style) = (camera(2500.0, 30.0), Style::road_atlas());
     let scene = one_tile(64, hills, &junction(), style.clone());
     let view = view(&camera, &style, RoadMethod::Geometry);
-    let view = FrameView { wireframe: Wireframe::Shown, ..view };
-    golden().check("wireframe", &image(&gpu, scene.draw_view(&gpu, &view, 1).picture()));
+    let view = FrameView { is_wireframe: true, ..view };
+    golden().check("wireframe", &image(&gpu, &scene.draw_view(&gpu, &view, 1).picture));
 }
 
 #[test]
@@ -125,7 +125,7 @@ fn a_road_five_percent_wider_is_no_match() {
     let Some(gpu) = software() else { return };
     let mut style = near_style();
     style.roads[4].width_m *= 1.05;
-    let picture = image(&gpu, near(&gpu, &style, RoadMethod::ShadowVolumes).picture());
+    let picture = image(&gpu, &near(&gpu, &style, RoadMethod::ShadowVolumes).picture);
     let found = golden().mismatch("junction-sv", &picture).unwrap();
     println!("must fail, one road 5 % wider: {found}");
     assert!(!found.is_match());
@@ -140,7 +140,7 @@ fn a_colour_three_percent_off_is_no_match() {
     let mut style = near_style();
     let [red, green, blue] = style.roads[4].bands.main_color();
     style.roads[4].bands = RoadBands::one([red, green, blue + 0.03]);
-    let picture = image(&gpu, near(&gpu, &style, RoadMethod::ShadowVolumes).picture());
+    let picture = image(&gpu, &near(&gpu, &style, RoadMethod::ShadowVolumes).picture);
     let found = golden().mismatch("junction-sv", &picture).unwrap();
     println!("must fail, one colour 3 % off: {found}");
     assert!(!found.is_match());

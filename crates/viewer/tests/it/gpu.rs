@@ -83,8 +83,8 @@ fn compare(
             sum.excluded += 1;
             continue;
         }
-        let depth_m = camera.near_m() / f64::from(drawing.depth[index]);
-        let ground = camera.eye_in_world() + camera.ray_in_world(at) * depth_m;
+        let depth_m = camera.near_m / f64::from(drawing.depth[index]);
+        let ground = camera.eye_in_world + camera.ray_in_world(at) * depth_m;
         let beyond_m = plan_distance_m(ground.truncate(), &tile.2) - half_m;
         sum.covered += usize::from(beyond_m <= 0.0);
         // A step of a pixel on the screen moves the plan position by at least this much.
@@ -117,7 +117,7 @@ fn hidden_centerline_points(
                 continue;
             }
             let index = at.y as usize * SIZE[0] as usize + at.x as usize;
-            let ground_m = camera.near_m() / f64::from(drawing.depth[index]);
+            let ground_m = camera.near_m / f64::from(drawing.depth[index]);
             // Half a pixel beside the line, the ground is this much nearer or farther at a grazing angle.
             let in_view = (ground_m - depth_m).abs() < 0.02 * depth_m;
             hidden +=

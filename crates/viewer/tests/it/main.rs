@@ -4,6 +4,8 @@ mod flights;
 mod geo_against_sv;
 mod golden;
 mod gpu;
+#[path = "../../src/gpu/labels_tests.rs"]
+mod labels;
 mod oracle;
 mod outlines;
 mod package_tiles;

@@ -7,7 +7,7 @@ use crate::support::{frame, gpu, ground_line, lay, plain_style, terrain, triangl
 use corniche_geom::TileId;
 use corniche_styles::{RoadStyle, Style};
 use corniche_viewer::{
-    FrameView, Outline, RoadMethod, RoadOptions, Wireframe,
+    FrameView, Outline, RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     for_tests::{class_of, is_service, is_tunnel},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
@@ -54,7 +54,7 @@ struct Edges<'a> {
 
 impl<'a> Edges<'a> {
     fn new(gpu: &'a Gpu, camera: &'a Camera, style: Style, samples_per_side: u32) -> Self {
-        let targets = Targets::new(gpu, camera.size_px(), samples_per_side).unwrap();
+        let targets = Targets::new(gpu, camera.size_px, samples_per_side).unwrap();
         Self { gpu, renderer: Renderer::new(gpu), camera, style, targets }
     }
 
@@ -70,11 +70,11 @@ impl<'a> Edges<'a> {
             wall_m: 0.0,
             cell_px: f64::INFINITY,
             latitude_deg: 47.0,
-            wireframe: Wireframe::Hidden,
+            is_wireframe: false,
         };
         let tiles = [DrawTile { buffers: &buffers, skirt_depth_m: 0.0 }];
         self.renderer.draw(self.gpu, &view, &tiles, &self.targets);
-        self.targets.read_picture(self.gpu).unwrap()
+        self.targets.picture.read(self.gpu).unwrap()
     }
 
     /// Checks that edges are drawn in exactly the pixels where the plain filter finds them; returns their number.
@@ -82,8 +82,8 @@ impl<'a> Edges<'a> {
         let bare = self.picture(tile, Outline::None);
         let labels = self.targets.read_labels(self.gpu).unwrap();
         let depth = self.targets.read_depth(self.gpu).unwrap();
-        let [width, height] = self.targets.size_px().map(|side| side as usize);
-        let samples = self.targets.samples_per_side() as usize;
+        let [width, height] = self.targets.picture.size_px.map(|side| side as usize);
+        let samples = self.targets.picture.samples_per_side as usize;
         let mut total = 0;
         for (outline, radius_px) in [(Outline::Kernel3, 1), (Outline::Kernel5, 2)] {
             let drawn = self.picture(tile, outline);
@@ -160,7 +160,7 @@ fn a_dot_has_its_edge_wherever_it_lies() {
         let edges = Edges::new(&gpu, &camera, style(1.9 * pixel_m as f32), samples);
         let at_sample = |x: u32, y: u32| {
             let pixel = (DVec2::new(f64::from(x), f64::from(y)) + 0.5) / f64::from(samples);
-            (camera.eye_in_world() + 1000.0 * camera.ray_in_world(pixel)).truncate()
+            (camera.eye_in_world + 1000.0 * camera.ray_in_world(pixel)).truncate()
         };
         let sampled_px = size_px.map(|side| side * samples);
         for shift in 0..16 {

@@ -85,7 +85,7 @@ fn several_tiles_are_under_way_at_once_and_each_is_one_request() {
     line.set(Line::Waiting);
     asked.set(0);
     let ids = ["0/0/0", "1/0/1", "2/3/2"].map(tile);
-    let [mut first, mut second, mut third] = ids.map(|id| Box::pin(tiles.load(id)));
+    let [mut first, mut second, mut third] = ids.map(|id| Box::pin(tiles.tile(id)));
     assert!(poll(first.as_mut()).is_pending());
     assert!(poll(second.as_mut()).is_pending());
     line.set(Line::Open);
@@ -111,15 +111,15 @@ fn what_does_not_come_costs_one_tile() {
     let bytes = MemorySource::new(fs::read(package(folder.path())).unwrap());
     let server = Server { bytes, line: &line, asked: &asked };
     let tiles = done(PackageTiles::new(done(Package::open(server)).unwrap())).unwrap();
-    let tiles = tiles.for_method(RoadMethod::None);
+    let tiles = tiles.with_decoder(TileDecoder::default().for_method(RoadMethod::None));
 
     line.set(Line::Broken);
-    let error = done(tiles.load(tile("1/0/1"))).unwrap_err();
+    let error = done(tiles.tile(tile("1/0/1"))).unwrap_err();
     assert_eq!(error.id, tile("1/0/1"));
     let cause = std::error::Error::source(&error).unwrap().to_string();
     assert!(cause.contains("https://example.org") && cause.contains("no answer"), "{cause}");
     line.set(Line::Open);
-    let loaded = done(tiles.load(tile("1/0/1"))).unwrap();
+    let loaded = done(tiles.tile(tile("1/0/1"))).unwrap();
     assert!(
         loaded.roads.all().is_empty() && loaded.volumes.all().is_empty(),
         "without roads, as asked"
@@ -160,7 +160,10 @@ fn settled(
 fn roads_that_are_not_read_are_not_sought() {
     let folder = tempfile::tempdir().unwrap();
     let path = package(folder.path());
-    let reads = |method| PackageSource::open(&path).unwrap().for_method(method).may_have_roads();
+    let reads = |method| {
+        let decoder = TileDecoder::default().for_method(method);
+        PackageSource::open(&path).unwrap().with_decoder(decoder).may_have_roads()
+    };
     assert!(PackageSource::open(&path).unwrap().may_have_roads());
     assert_eq!(
         [RoadMethod::Geometry, RoadMethod::ShadowVolumes, RoadMethod::None].map(reads),
@@ -191,7 +194,7 @@ fn a_streamer_chooses_the_same_from_tiles_that_come_later() {
     let mut under_way = Vec::new();
     let (mut frames, mut waits) = (0, 0);
     let found = settled(&tiles, &camera, |ids| {
-        under_way.extend(ids.iter().map(|id| Box::pin(tiles.load(*id))));
+        under_way.extend(ids.iter().map(|id| Box::pin(tiles.tile(*id))));
         // The server answers in every third frame only.
         frames += 1;
         line.set(if frames % 3 == 0 { Line::Open } else { Line::Waiting });

@@ -5,17 +5,16 @@ use std::time::{Duration, Instant};
 
 use crate::support::{class, frame, gpu, ground_line, lay, plain_style, terrain, triangles};
 use corniche_geom::TileId;
-use corniche_roads::OwnWidth;
 use corniche_styles::Style;
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions, Wireframe,
+    FrameView, RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     for_tests::PlanLine,
     gpu::{
         DIFFERENCE_COLORS, DrawTile, Gpu, GpuError, PassTimer, Picture, Renderer, Targets,
         TileBuffers,
     },
-    tiles::{RoadLook, TileGeometry, TileLines},
+    tiles::{RoadKind, TileGeometry, TileLines},
 };
 use glam::DVec2;
 
@@ -35,9 +34,7 @@ fn geometry(from: [f64; 2], to: [f64; 2]) -> TileGeometry {
     let plan = PlanLine {
         dashes: None,
         way_id: 1,
-        class: class(2),
-        own_width: OwnWidth::Unknown,
-        look: RoadLook::Plain,
+        kind: RoadKind::plain(class(2)),
         points_m: vec![from.to_array(), to.to_array()],
         ground_range_m: vec![ground.height_range_m],
     };
@@ -66,13 +63,13 @@ fn view<'a>(camera: &'a Camera, style: &'a Style) -> FrameView<'a> {
         wall_m: 0.0,
         cell_px: f64::INFINITY,
         latitude_deg: 47.0,
-        wireframe: Wireframe::Hidden,
+        is_wireframe: false,
     }
 }
 
 fn draw(gpu: &Gpu, tile: &TileGeometry, view: &FrameView<'_>, samples_per_side: u32) -> Targets {
     let buffers = TileBuffers::new(gpu, tile, None);
-    let targets = Targets::new(gpu, view.camera.size_px(), samples_per_side).unwrap();
+    let targets = Targets::new(gpu, view.camera.size_px, samples_per_side).unwrap();
     let tiles = [DrawTile { buffers: &buffers, skirt_depth_m: 0.0 }];
     Renderer::new(gpu).draw(gpu, view, &tiles, &targets);
     targets
@@ -106,11 +103,11 @@ fn a_picture_of_several_samples_is_the_mean_of_a_larger_one() {
     for samples_per_side in 1..=4 {
         let averaged = draw(&gpu, &tile, &view(&camera, &style), samples_per_side);
         let large = camera.supersampled(samples_per_side);
-        let samples = draw(&gpu, &tile, &view(&large, &style), 1).read_picture(&gpu).unwrap();
+        let samples = draw(&gpu, &tile, &view(&large, &style), 1).picture.read(&gpu).unwrap();
         let expected = average(&samples, SIZE.map(|side| side as usize), samples_per_side as usize);
-        assert_eq!(averaged.size_px(), SIZE);
+        assert_eq!(averaged.picture.size_px, SIZE);
         assert_eq!(expected.len(), (SIZE[0] * SIZE[1] * 4) as usize);
-        let found = averaged.read_picture(&gpu).unwrap();
+        let found = averaged.picture.read(&gpu).unwrap();
         let differing = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
         assert_eq!(differing, 0, "of {} with {samples_per_side}", expected.len());
     }
@@ -124,7 +121,7 @@ fn edges_are_as_wide_with_several_samples_as_with_one() {
     let camera = camera();
     let dark = |samples_per_side| {
         let targets = draw(&gpu, &tile, &view(&camera, &style), samples_per_side);
-        let pixels = targets.read_picture(&gpu).unwrap();
+        let pixels = targets.picture.read(&gpu).unwrap();
         pixels.chunks_exact(4).map(|p| 255.0 - f64::from(p[0])).sum::<f64>() / 255.0
     };
     let [one, three] = [dark(1), dark(3)];
@@ -187,7 +184,7 @@ fn a_wireframe_darkens_the_ground_and_leaves_all_else() {
     let tile = geometry([-500.0, -300.0], [600.0, 400.0]);
     let (camera, style) = (camera(), plain_style(40.0));
     let bare = draw(&gpu, &tile, &view(&camera, &style), 1);
-    let wired_view = FrameView { wireframe: Wireframe::Shown, ..view(&camera, &style) };
+    let wired_view = FrameView { is_wireframe: true, ..view(&camera, &style) };
     let wired = draw(&gpu, &tile, &wired_view, 1);
     assert_eq!(bare.read_owners(&gpu).unwrap(), wired.read_owners(&gpu).unwrap());
     assert_eq!(bare.read_labels(&gpu).unwrap(), wired.read_labels(&gpu).unwrap());
@@ -267,7 +264,7 @@ fn opengl_draws_the_same_picture() {
     for method in [RoadMethod::Geometry, RoadMethod::ShadowVolumes] {
         let view = FrameView { roads: RoadOptions::of(method), ..view(&camera, &style) };
         let [a, b] =
-            [&gpu, &opengl].map(|gpu| draw(gpu, &tile, &view, 2).read_picture(gpu).unwrap());
+            [&gpu, &opengl].map(|gpu| draw(gpu, &tile, &view, 2).picture.read(gpu).unwrap());
         let differing = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
         assert_eq!(a.len(), (SIZE[0] * SIZE[1] * 4) as usize);
         assert!(differing < a.len() / 1000, "{method:?}: {differing} of {}", a.len());
@@ -279,7 +276,7 @@ fn a_mistake_is_told_and_does_not_end_the_process() {
     let Some(gpu) = gpu() else { return };
     assert_eq!(gpu.take_fault(), None);
     // Larger than any device allows.
-    let _ = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+    let _ = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: 1 << 60,
         usage: wgpu::BufferUsages::VERTEX,
@@ -288,8 +285,8 @@ fn a_mistake_is_told_and_does_not_end_the_process() {
     assert!(gpu.take_fault().is_some());
     assert_eq!(gpu.take_fault(), None, "told once");
     assert!(!gpu.is_lost());
-    gpu.device().destroy();
-    let _ = gpu.device().poll(wgpu::PollType::wait_indefinitely());
+    gpu.device.destroy();
+    let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
     assert!(gpu.is_lost());
-    assert!(Targets::new(&gpu, [8, 8], 1).unwrap().read_picture(&gpu).is_err());
+    assert!(Targets::new(&gpu, [8, 8], 1).unwrap().picture.read(&gpu).is_err());
 }

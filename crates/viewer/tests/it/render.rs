@@ -9,8 +9,9 @@ use crate::support::{
 };
 use corniche_styles::Style;
 use corniche_viewer::{
-    CameraRequest, RenderError, RenderRequest, Rendered, RoadMethod, RoadOptions, Wireframe,
-    camera::Orientation, tiles::PackageSource,
+    CameraRequest, RenderError, RenderRequest, Rendered, RoadMethod, RoadOptions,
+    camera::Orientation,
+    tiles::{PackageSource, TileDecoder},
 };
 use image::RgbaImage;
 
@@ -26,7 +27,7 @@ fn request(package: &Path) -> RenderRequest {
         supersampling: 2,
         legend: None,
         title: None,
-        wireframe: Wireframe::Hidden,
+        is_wireframe: false,
         style: Style::road_atlas(),
     }
 }
@@ -42,7 +43,8 @@ fn render(package: &Path, request: &RenderRequest) -> Result<Rendered, RenderErr
 
 /// The package, opened for the road method of the request.
 fn opened(package: &Path, request: &RenderRequest) -> PackageSource {
-    PackageSource::open(package).unwrap().for_method(request.roads.method)
+    let decoder = TileDecoder::default().for_method(request.roads.method);
+    PackageSource::open(package).unwrap().with_decoder(decoder)
 }
 
 /// Pixels that look like the motorway of the style.
@@ -99,7 +101,7 @@ fn a_wireframe_shows_the_edges_of_triangles() {
         camera: look_at(ORIGIN_DEG[0] + 0.01, ORIGIN_DEG[1] + 0.01),
         ..request(&package)
     };
-    let wired = RenderRequest { wireframe: Wireframe::Shown, ..plain.clone() };
+    let wired = RenderRequest { is_wireframe: true, ..plain.clone() };
     let [plain, wired] = [plain, wired].map(|request| render(&package, &request).unwrap());
     keep("wireframe", &wired);
     assert_eq!(plain.report, wired.report);

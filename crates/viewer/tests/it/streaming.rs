@@ -9,12 +9,12 @@ use crate::support::{
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions, Wireframe,
+    FrameView, RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     for_tests,
     gpu::{DrawTile, Renderer, Targets, TileBuffers},
     lod::Quality,
-    tiles::TileStore,
+    tiles::{LoadTileError, TileStore},
 };
 use glam::{DVec2, DVec3};
 
@@ -35,7 +35,8 @@ fn picture(
     let gpu = gpu()?;
     let mut store = TileStore::new(country);
     let quality = Quality::by_error(error_px, 1.0);
-    let drawn = for_tests::settle(&mut store, camera, quality, &|| false).unwrap();
+    let drawn =
+        for_tests::settle(&mut store, camera, quality, || Ok::<_, LoadTileError>(())).unwrap();
     let mut levels = [0; 5];
     for tile in &drawn {
         levels[usize::from(tile.id.z())] += 1;
@@ -47,7 +48,7 @@ fn picture(
         .iter()
         .map(|(buffers, depth)| DrawTile { buffers, skirt_depth_m: *depth })
         .collect();
-    let targets = Targets::new(&gpu, camera.size_px(), 1).unwrap();
+    let targets = Targets::new(&gpu, camera.size_px, 1).unwrap();
     let view = FrameView {
         camera,
         style,
@@ -58,7 +59,7 @@ fn picture(
         wall_m: 0.0,
         cell_px: f64::INFINITY,
         latitude_deg: 47.0,
-        wireframe: Wireframe::Hidden,
+        is_wireframe: false,
     };
     Renderer::new(&gpu).draw(&gpu, &view, &tiles, &targets);
     Some((Drawing::read(&gpu, &targets), levels))
@@ -84,8 +85,8 @@ fn levels_meet_without_holes_and_within_the_error_asked_for() {
         let finest_m = MAX_ERROR_M + interpolation_error_m(CELL_M);
         let (mut worst_px, mut worst_share): (f64, f64) = (0.0, 0.0);
         for (index, at) in drawing.pixels() {
-            let depth_m = camera.near_m() / f64::from(drawing.depth[index]);
-            let ground = camera.eye_in_world() + camera.ray_in_world(at) * depth_m;
+            let depth_m = camera.near_m / f64::from(drawing.depth[index]);
+            let ground = camera.eye_in_world + camera.ray_in_world(at) * depth_m;
             // Skirts hang below the ground by design; everything else is within the error of its tile.
             if drawing.ground[index * 4 + 3] == 255 {
                 let off_m = (ground.z - height_m(ground.x, ground.y)).abs();
@@ -108,7 +109,8 @@ fn levels_meet_without_holes_and_within_the_error_asked_for() {
 #[test]
 fn draped_roads_show_on_every_level() {
     let country = Country::new();
-    let style = Style::road_atlas().at_every_scale();
+    let mut style = Style::road_atlas();
+    style.roads.iter_mut().for_each(|road| road.max_pixel_m = None);
     for (error_px, distance_m) in [(2.0, 9000.0), (16.0, 9000.0), (4.0, 40_000.0)] {
         let orientation = Orientation { heading_deg: 0.0, pitch_deg: 40.0 };
         let camera = Camera::look_at(target(&country), distance_m, orientation, SIZE);

@@ -18,7 +18,7 @@ use corniche_styles::{RoadBand, RoadBands, RoadStyle, Style, WidthScaling};
 use corniche_tileset::Terrain;
 use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
-    FrameView, RoadMethod, RoadOptions, Wireframe,
+    FrameView, RoadMethod, RoadOptions,
     camera::Camera,
     for_tests::{GroundLine, Owner, class_of},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
@@ -253,8 +253,8 @@ pub(crate) struct Drawing {
 impl Drawing {
     pub(crate) fn read(gpu: &Gpu, targets: &Targets) -> Self {
         let drawing = Self {
-            size_px: targets.size_px(),
-            picture: targets.read_picture(gpu).unwrap(),
+            size_px: targets.picture.size_px,
+            picture: targets.picture.read(gpu).unwrap(),
             ground: targets.read_ground(gpu).unwrap(),
             depth: targets.read_depth(gpu).unwrap(),
             labels: targets.read_labels(gpu).unwrap(),
@@ -329,7 +329,7 @@ pub(crate) fn draw_exaggerated(
         .iter()
         .map(|(buffers, depth)| DrawTile { buffers, skirt_depth_m: *depth })
         .collect();
-    let targets = Targets::new(gpu, camera.size_px(), 1).unwrap();
+    let targets = Targets::new(gpu, camera.size_px, 1).unwrap();
     let view = FrameView {
         camera,
         style,
@@ -340,7 +340,7 @@ pub(crate) fn draw_exaggerated(
         wall_m: 0.0,
         cell_px: f64::INFINITY,
         latitude_deg: 47.0,
-        wireframe: Wireframe::Hidden,
+        is_wireframe: false,
     };
     Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);
     Drawing::read(gpu, &targets)

@@ -16,29 +16,15 @@ use crate::{
 /// Pictures from being asked for to being saved.
 pub(crate) struct Captures {
     pub(crate) files: FileWriter,
-    wanted: Vec<Shot>,
+    /// Pictures that are asked for and not yet begun.
+    pub(crate) wanted: Vec<Shot>,
     /// Pictures whose pixels are on their way back from the graphics card.
-    developing: VecDeque<(Shot, Snapshot)>,
+    pub(crate) developing: VecDeque<(Shot, Snapshot)>,
 }
 
 impl Captures {
     pub(crate) fn new(files: FileWriter) -> Self {
         Self { files, wanted: Vec::new(), developing: VecDeque::new() }
-    }
-
-    /// A picture is to be saved.
-    pub(crate) fn want(&mut self, shot: Shot) {
-        self.wanted.push(shot);
-    }
-
-    /// Whether a picture is asked for and not yet begun.
-    pub(crate) fn is_wanted(&self) -> bool {
-        !self.wanted.is_empty()
-    }
-
-    /// Whether pixels are on their way back from the graphics card.
-    pub(crate) fn is_developing(&self) -> bool {
-        !self.developing.is_empty()
     }
 
     /// Begins the pictures that are asked for, and saves those whose pixels have come back, in the order in which they
@@ -68,7 +54,7 @@ impl Captures {
             }
         }
         while let Some((_, snapshot)) = self.developing.front_mut() {
-            match snapshot.has_arrived(canvas.gpu()) {
+            match snapshot.pixels.has_arrived(canvas.gpu()) {
                 Ok(false) => break,
                 Ok(true) => {}
                 // The caller makes everything on the device again, and then `lose_device` is called.
@@ -99,7 +85,7 @@ impl Captures {
 
     /// The graphics device is lost, and with it the pictures that were being taken: `Some` if there were any.
     pub(crate) fn lose_device(&mut self) -> Option<NotSaved> {
-        let had_some = self.is_developing();
+        let had_some = !self.developing.is_empty();
         self.developing.clear();
         had_some.then_some(NotSaved::DeviceLost)
     }

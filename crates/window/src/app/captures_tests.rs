@@ -15,13 +15,13 @@ fn a_lost_device_does_not_hide_why_other_pictures_were_not_taken() {
     // Nothing is saved.
     let folder = Path::new("no folder").to_path_buf();
     let mut captures = Captures::new(FileWriter::new(folder, Arc::new(|| ())));
-    canvas.gpu().device().destroy();
+    canvas.gpu().device.destroy();
     // Its pixels cannot come.
     let snapshot = canvas.snap_map(0.5).unwrap();
     // Without a picture of the map there is nothing to take.
     scene.roads.clear();
     canvas.draw(&scene).unwrap();
-    captures.want(Shot::Map);
+    captures.wanted.push(Shot::Map);
     captures.developing.push_back((Shot::Map, snapshot));
     // The device tells of its loss once it has been waited for.
     let _ = canvas.gpu().finish();

@@ -11,9 +11,9 @@ use egui_wgpu::ScreenDescriptor;
 use super::App;
 use crate::{
     WindowError,
-    canvas::{Canvas, Drew},
+    canvas::Canvas,
     panel::{self, Answer},
-    window_content::{Has, WindowContent},
+    window_content::WindowContent,
 };
 
 /// Time between two questions whether the pixels of a picture have come back.
@@ -60,14 +60,15 @@ impl App {
         }
         let step = desk.step(&mut canvas.map, size_px, pixels_per_point, now_s);
         // A picture that is to be saved is drawn in full.
-        let scene = desk.scene(&canvas.map, size_px, self.captures.is_wanted(), now_s);
-        let drew = canvas.draw(&scene)?;
-        desk.session.look_at_ground(&step.camera, drew.is_new);
+        let is_wanted = !self.captures.wanted.is_empty();
+        let scene = desk.scene(&canvas.map, size_px, is_wanted, now_s);
+        let is_new = canvas.draw(&scene)?;
+        desk.session.look_at_ground(&step.camera, is_new);
         desk.take_times(&mut canvas.map)?;
         let line = self.trace.as_ref().map(|_| TraceLine::of(&desk.session, self.frame, size_px));
 
         let before = self.desk.session.settings.clone();
-        let mut output = self.show_panel(canvas, ui, raw, drew, now_s);
+        let mut output = self.show_panel(canvas, ui, raw, now_s);
         let is_changed = self.desk.session.settings != before;
 
         let screen = ScreenDescriptor { size_in_pixels: size_px, pixels_per_point };
@@ -83,9 +84,9 @@ impl App {
         }
 
         let camera = &self.desk.session.camera;
-        let is_busy =
-            camera.navigator.is_moving() || step.is_under_way || self.captures.is_wanted();
-        let is_one_of_many = drew.is_new && (is_busy || camera.is_dragging());
+        let is_wanted = !self.captures.wanted.is_empty();
+        let is_busy = camera.navigator.is_moving() || step.is_under_way || is_wanted;
+        let is_one_of_many = is_new && (is_busy || camera.is_dragging);
         self.desk.pace.note(now_s, is_one_of_many, is_busy);
         let redraw = self.next_redraw(canvas, now_s, is_busy || is_changed, &output);
         Ok(FrameOutput {
@@ -111,7 +112,7 @@ impl App {
             return Redraw::Now;
         }
         let wish_s = (wish_s <= LONGEST_WISH_S).then_some(wish_s);
-        let picture_s = self.captures.is_developing().then_some(PICTURE_S);
+        let picture_s = (!self.captures.developing.is_empty()).then_some(PICTURE_S);
         self.desk.next_redraw(&canvas.map, [picture_s, wish_s], now_s)
     }
 
@@ -121,7 +122,6 @@ impl App {
         canvas: &Canvas,
         ui: &egui::Context,
         raw: egui::RawInput,
-        drew: Drew,
         now_s: f64,
     ) -> egui::FullOutput {
         let mut answer = Answer::default();
@@ -130,7 +130,7 @@ impl App {
         let road_colors: Vec<Rgb> = roads.map(|road| road.bands.main_color()).collect();
         let content = self.content(canvas, ui, &road_colors, now_s);
         let output = ui.run_ui(raw, |ui| {
-            let shown = panel::show(ui, &mut settings, &content, drew.pictures);
+            let shown = panel::show(ui, &mut settings, &content, &canvas.pictures());
             // The toolkit may lay out twice; a click is reported in one of the two.
             answer.commands.extend(shown.commands);
             answer.occupied = shown.occupied;
@@ -153,34 +153,35 @@ impl App {
         let session = &self.desk.session;
         let (manifest, style, tiles) = (session.manifest(), session.style(), &session.tiles);
         let is_over_map = session.cursor_px.is_some_and(|at_px| self.is_map(ui, at_px));
-        let counts = canvas.map.counts();
-        let points = session.camera.pixels_per_point() / manifest.point_scale;
+        let counts = canvas.map.counts;
+        let points = session.camera.pixels_per_point / manifest.point_scale;
         WindowContent {
-            adapter: canvas.gpu().adapter_name(),
+            adapter: &canvas.gpu().adapter_name,
             is_software: canvas.gpu().is_software(),
             attribution: &manifest.attribution,
             crs: WorkingCrs::of(manifest),
             cursor: session.probe.cursor().filter(|_| is_over_map),
             pose: session.pose(),
-            metres_per_point: session.probe.middle_pixel_m().map(|pixel_m| pixel_m * points),
-            mode: session.camera.navigator.mode(),
-            style_names: session.styles.names(),
-            has: Has { areas: manifest.areas.is_some(), boundaries: manifest.boundaries.is_some() },
+            metres_per_point: session.probe.middle_pixel_m.map(|pixel_m| pixel_m * points),
+            mode: session.camera.navigator.mode,
+            style_names: &session.styles.names,
+            has_areas: manifest.areas.is_some(),
+            has_boundaries: manifest.boundaries.is_some(),
             overlays: &self.desk.overlays,
             overlay_colors: session.overlay_colors(self.desk.overlays.len()),
             photo: manifest.settings.photo.map(|_| style.photo),
             boundary_lines: BoundaryLines::of(manifest, style),
             road_colors,
             class_labels: &self.class_labels,
-            tiles_drawn: tiles.drawn().len(),
-            tiles_missing: tiles.missing(),
+            tiles_drawn: tiles.drawn.len(),
+            tiles_missing: tiles.missing,
             tiles_loading: tiles.loading(),
-            is_full: tiles.is_full(),
+            is_full: tiles.is_full,
             triangles: counts.triangles,
             segments: counts.segments,
             gpu_bytes: tiles.bytes_of_budget(),
             passes: &self.desk.passes,
-            frame_times: self.desk.pace.times(),
+            frame_times: &self.desk.pace.times,
             drawing: self.desk.drawing.content(session),
             recording_s: session.flights.recording_s(now_s),
             notices: self.desk.notices.all(),

@@ -3,7 +3,7 @@
 use corniche_live::{Command, formatting};
 use egui::{Align2, Color32, CornerRadius, FontId, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
-use super::palette::{CHALK, MARGIN, OverlayAnswer, SLATE, framed};
+use super::palette::{Answer, CHALK, MARGIN, SLATE, framed};
 use crate::window_content::WindowContent;
 
 const RADIUS: f32 = 26.0;
@@ -23,7 +23,7 @@ pub(crate) fn compass(
     ui: &mut Ui,
     area: Rect,
     content: &WindowContent<'_>,
-    answer: &mut OverlayAnswer,
+    answer: &mut Answer,
 ) -> [f32; 2] {
     let (center, radius) = (area.center(), RADIUS);
     let hover = "Heading and pitch. Click: north up (N)";
@@ -68,7 +68,7 @@ pub(crate) fn compass(
 }
 
 /// Lays out the button that opens the panel, beneath `top` at the right edge, if there is room for it.
-pub(crate) fn panel_button(ui: &mut Ui, room: Rect, top: f32, answer: &mut OverlayAnswer) {
+pub(crate) fn panel_button(ui: &mut Ui, room: Rect, top: f32, answer: &mut Answer) {
     let corner = pos2(room.right() - MARGIN - SIDE, top + MARGIN);
     let plate = Rect::from_min_size(corner, vec2(SIDE, SIDE));
     if !room.contains_rect(plate) {

@@ -4,7 +4,7 @@
 use corniche_live::{DrawingContent, MapSettings, range};
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 
-use super::palette::{CHALK, MARGIN, OverlayAnswer, SLATE};
+use super::palette::{Answer, CHALK, MARGIN, SLATE};
 
 /// The divider of a split screen stays this far from the panel, points.
 const GRIP_ROOM: f32 = 24.0;
@@ -17,7 +17,7 @@ pub(crate) fn divider(
     rect: Rect,
     compass: Rect,
     settings: &mut MapSettings,
-    answer: &mut OverlayAnswer,
+    answer: &mut Answer,
 ) {
     let whole = ui.ctx().viewport_rect();
     let share_at = |x: f32| (x - whole.left()) / whole.width().max(1.0);

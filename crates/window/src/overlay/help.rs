@@ -3,13 +3,13 @@
 use corniche_live::{Command, KEY_HELP};
 use egui::{Grid, Rect, RichText, ScrollArea, Ui, UiBuilder, vec2};
 
-use super::palette::{CHALK, MARGIN, OverlayAnswer, SLATE, framed};
+use super::palette::{Answer, CHALK, MARGIN, SLATE, framed};
 
 /// The page is no larger than this, points.
 const MOST: [f32; 2] = [470.0, 630.0];
 
 /// Lays out the page of keys and mouse in the middle of the room; a small window scrolls it.
-pub(crate) fn help(ui: &mut Ui, room: Rect, answer: &mut OverlayAnswer) {
+pub(crate) fn help(ui: &mut Ui, room: Rect, answer: &mut Answer) {
     let room = room.shrink(MARGIN);
     let size = vec2(MOST[0].min(room.width()), MOST[1].min(room.height()));
     let plate = Rect::from_center_size(room.center(), size);

@@ -7,7 +7,7 @@ use corniche_live::{Command, Notice, controls::Mode};
 use corniche_viewer::gpu::{DIFFERENCE_COLORS, DifferenceColors};
 use egui::{Color32, CornerRadius, FontId, Galley, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
 
-use super::palette::{AMBER, CHALK, LABEL_HEIGHT, MARGIN, OverlayAnswer, SLATE, framed};
+use super::palette::{AMBER, Answer, CHALK, LABEL_HEIGHT, MARGIN, SLATE, framed};
 use crate::window_content::WindowContent;
 
 /// What is said where the middle of the map has no ground.
@@ -56,12 +56,7 @@ pub(crate) fn legend(ui: &Ui, room: Rect) -> f32 {
 }
 
 /// Lays out the notices: the newest of them, as many as there is room for.
-pub(crate) fn notices(
-    ui: &mut Ui,
-    room: Rect,
-    content: &WindowContent<'_>,
-    answer: &mut OverlayAnswer,
-) {
+pub(crate) fn notices(ui: &mut Ui, room: Rect, content: &WindowContent<'_>, answer: &mut Answer) {
     let mut top = room.top() + MARGIN;
     let width = (room.width() - 2.0 * MARGIN).min(460.0);
     let mut left = room.height() - MARGIN;

@@ -20,14 +20,16 @@ pub(crate) const SLATE: Color32 = Color32::from_rgba_premultiplied(22, 24, 28, 2
 /// And this is the light.
 pub(crate) const CHALK: Color32 = Color32::from_rgb(236, 238, 240);
 
-/// What a person clicked on the overlay, and the parts of the map on which a click is the overlay's.
+/// What a person did in the panel and on the overlay in a frame.
 #[derive(Default)]
-pub(crate) struct OverlayAnswer {
+pub(crate) struct Answer {
+    /// What the person asked for.
     pub(crate) commands: Vec<Command>,
+    /// The parts of the window where the mouse does not act on the map.
     pub(crate) occupied: Vec<Rect>,
 }
 
-impl OverlayAnswer {
+impl Answer {
     /// A place on the map that asks for something when it is clicked.
     pub(crate) fn clickable(
         &mut self,

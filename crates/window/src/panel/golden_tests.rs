@@ -20,11 +20,11 @@ fn golden() -> Golden {
 }
 
 fn is_pinned(gpu: &Gpu) -> bool {
-    let is_pinned = ["llvmpipe", "vulkan"].iter().all(|part| gpu.adapter_name().contains(part));
+    let is_pinned = ["llvmpipe", "vulkan"].iter().all(|part| gpu.adapter_name.contains(part));
     if !is_pinned {
         corniche_testing::skip(&format!(
             "these pictures are llvmpipe's, not {}'s",
-            gpu.adapter_name()
+            gpu.adapter_name
         ));
     }
     is_pinned
@@ -32,7 +32,8 @@ fn is_pinned(gpu: &Gpu) -> bool {
 
 /// The window over a map of sky and void.
 fn painted(canvas: &mut Canvas, size_px: [u32; 2], settings: &mut MapSettings) -> RgbaImage {
-    let drew = canvas.draw(&scene_of_size(settings.compare, size_px)).unwrap();
+    canvas.draw(&scene_of_size(settings.compare, size_px)).unwrap();
+    let pictures = canvas.pictures();
     let told = Told::new();
     let ctx = egui::Context::default();
     set_up(&ctx);
@@ -45,7 +46,7 @@ fn painted(canvas: &mut Canvas, size_px: [u32; 2], settings: &mut MapSettings) -
             ..RawInput::default()
         };
         output = ctx.run_ui(input, |ui| {
-            show(ui, settings, &told.content(), drew.pictures);
+            show(ui, settings, &told.content(), &pictures);
         });
         canvas.take_textures(std::mem::take(&mut output.textures_delta));
     }

@@ -3,7 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use corniche_live::{Compare, MapSettings, Refinement, Visibility, range};
+use corniche_live::{Compare, MapSettings, range};
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Rgb;
 use corniche_viewer::{BoundaryLines, CapTest, Caps, Outline, Quads, RoadMethod, WidthGrowth};
@@ -72,13 +72,14 @@ pub(crate) fn map(ui: &mut Ui, settings: &mut MapSettings, content: &WindowConte
     slide(ui, &mut settings.exaggeration, range::EXAGGERATION, |slider| {
         slider.prefix("× ").max_decimals(2).text("heights")
     });
-    if content.has.areas {
-        let hover = "Water, forest … as the style draws them";
-        layer(ui, &mut settings.areas, "Areas", hover);
+    if content.has_areas {
+        ui.checkbox(&mut settings.areas, "Areas")
+            .on_hover_text("Water, forest … as the style draws them");
     }
-    if content.has.boundaries {
-        layer(ui, &mut settings.boundaries, "Boundaries", "As the style draws them");
-        if settings.boundaries == Visibility::Shown {
+    if content.has_boundaries {
+        ui.checkbox(&mut settings.boundaries, "Boundaries")
+            .on_hover_text("As the style draws them");
+        if settings.boundaries {
             boundaries(ui, &content.boundary_lines);
         }
     }
@@ -104,13 +105,6 @@ pub(crate) fn map(ui: &mut Ui, settings: &mut MapSettings, content: &WindowConte
             settings.photo = Some(strength);
         }
     }
-}
-
-/// A box to tick for a layer.
-fn layer(ui: &mut Ui, layer: &mut Visibility, name: &str, hover: &str) {
-    let mut is_shown = *layer == Visibility::Shown;
-    ui.checkbox(&mut is_shown, name).on_hover_text(hover);
-    *layer = if is_shown { Visibility::Shown } else { Visibility::Hidden };
 }
 
 /// The legend of boundaries: how they are drawn, and what they are called.
@@ -145,10 +139,8 @@ pub(crate) fn advanced(ui: &mut Ui, settings: &mut MapSettings, content: &Window
         }
     });
     ui.checkbox(&mut settings.is_wireframe, "Wireframe");
-    let mut is_frozen = settings.refinement == Refinement::Frozen;
-    ui.checkbox(&mut is_frozen, "Freeze tiles")
+    ui.checkbox(&mut settings.is_frozen, "Freeze tiles")
         .on_hover_text("Keep what is drawn now while the camera moves");
-    settings.refinement = if is_frozen { Refinement::Frozen } else { Refinement::Live };
     ui.label("Widths of classes");
     widths(ui, settings, content);
 }

@@ -13,15 +13,6 @@ const LETTERS: f32 = 12.0;
 /// Room between two items, points.
 const GAP: f32 = 14.0;
 
-/// Whether there is room for the panel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PanelRoom {
-    /// There is, or the panel is closed.
-    Enough,
-    /// The window is too narrow.
-    TooLittle,
-}
-
 /// A part of the line.
 struct Item {
     text: String,
@@ -50,15 +41,15 @@ impl Item {
 }
 
 /// The line at the lower edge of the window: positions on the left, what is going on at the right. It has one row; what finds
-/// no room is left out, the least important first.
+/// no room is left out, the least important first. `is_narrow` says that an open panel found no room.
 pub(crate) fn status_line(
     ui: &mut Ui,
     settings: &MapSettings,
     content: &WindowContent<'_>,
-    panel: PanelRoom,
+    is_narrow: bool,
 ) {
     let room = ui.available_width();
-    let mut items: Vec<Item> = happening(content, panel);
+    let mut items: Vec<Item> = happening(content, is_narrow);
     let count = items.len();
     items.extend(positions(settings, content));
     let mut places: Vec<usize> = (0..items.len()).collect();
@@ -89,9 +80,9 @@ pub(crate) fn status_line(
 }
 
 /// What is going on, the most important first.
-fn happening(content: &WindowContent<'_>, panel: PanelRoom) -> Vec<Item> {
+fn happening(content: &WindowContent<'_>, is_narrow: bool) -> Vec<Item> {
     let mut items = Vec::new();
-    if panel == PanelRoom::TooLittle {
+    if is_narrow {
         items.push(Item::new(0, "a wider window shows the panel"));
     }
     if let Some(recording_s) = content.recording_s {
@@ -135,7 +126,7 @@ fn positions(settings: &MapSettings, content: &WindowContent<'_>) -> Vec<Item> {
     for (method, times) in content.passes {
         let PassTimes { terrain_ms, areas_ms, roads_ms, decks_ms, composite_ms } = *times;
         let areas =
-            if content.has.areas { format!(" areas {areas_ms:.1},") } else { String::new() };
+            if content.has_areas { format!(" areas {areas_ms:.1},") } else { String::new() };
         let bridges =
             if decks_ms > 0.0 { format!(" bridges {decks_ms:.1},") } else { String::new() };
         let method = formatting::method(*method);

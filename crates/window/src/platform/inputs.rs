@@ -179,7 +179,7 @@ impl Inputs {
         // A release is always the camera's: the key may have been pressed before Control was.
         if state == KeyState::Pressed
             && let Some(command) =
-                DrawingCommand::of_key(&sign, self.modifiers, app.desk.drawing.is_on())
+                DrawingCommand::of_key(&sign, self.modifiers, app.desk.drawing.is_on)
         {
             if !(event.repeat && command.is_once()) {
                 app.command(Command::Draw(command), now_s);

@@ -33,9 +33,10 @@ pub(crate) struct OpenWindow {
     ui: egui::Context,
     ui_state: egui_winit::State,
     inputs: Inputs,
-    end_key: EndKey,
-    window: Arc<Window>,
-    is_stopped: Box<dyn Fn() -> bool>,
+    pub(crate) end_key: EndKey,
+    pub(crate) window: Arc<Window>,
+    /// Whether the program must end.
+    pub(crate) is_stopped: Box<dyn Fn() -> bool>,
     is_hidden: bool,
     /// When everything on the graphics card was made again last.
     rebuilt_s: Option<f64>,
@@ -54,12 +55,12 @@ impl OpenWindow {
         let is_stopped = std::mem::replace(&mut request.is_stopped, Box::new(|| false));
         let window = new_window(event_loop, &request.name, request.size_px)?;
         let (screen, gpu) = Screen::new(event_loop, &window)?;
-        let canvas = Canvas::new(gpu, screen.format());
+        let canvas = Canvas::new(gpu, screen.configuration.format);
         let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || {
             // This fails once the event loop has ended, and then nothing needs to be told.
             let _ = news.send_event(News);
         });
-        let size_px = screen.size_px().map(|side| side.max(1));
+        let size_px = screen.size_px.map(|side| side.max(1));
         let ui = new_ui(None);
         let pixels_per_point = egui_winit::pixels_per_point(&ui, &window);
         let files = FileWriter::new(request.folder.clone(), Arc::clone(&wake));
@@ -89,21 +90,6 @@ impl OpenWindow {
             rebuilt_s: None,
             due_s: None,
         })
-    }
-
-    /// Asks for a frame.
-    pub(crate) fn request_redraw(&self) {
-        self.window.request_redraw();
-    }
-
-    /// Whether the program must end.
-    pub(crate) fn is_stopped(&self) -> bool {
-        (self.is_stopped)()
-    }
-
-    /// Whether this event is the key that ends the program.
-    pub(crate) fn is_end_key(&mut self, event: &WindowEvent) -> bool {
-        self.end_key.take(event)
     }
 
     /// Does what is due at this time; returns when something is due next without any event.
@@ -147,7 +133,7 @@ impl OpenWindow {
 
     /// Draws a frame, and first makes everything on the graphics card again if the device was lost.
     pub(crate) fn redraw(&mut self, now_s: f64) -> Result<(), WindowError> {
-        if self.is_hidden || self.screen.size_px().contains(&0) {
+        if self.is_hidden || self.screen.size_px.contains(&0) {
             return Ok(());
         }
         if self.canvas.gpu().is_lost() {
@@ -164,7 +150,7 @@ impl OpenWindow {
         self.inputs.hand_on_move(&mut self.app);
         let input = FrameInput {
             now_s,
-            size_px: self.screen.size_px(),
+            size_px: self.screen.size_px,
             pixels_per_point: egui_winit::pixels_per_point(&self.ui, &self.window),
             ui: self.ui_state.take_egui_input(&self.window),
         };
@@ -199,7 +185,7 @@ impl OpenWindow {
         }
         self.rebuilt_s = Some(now_s);
         let gpu = self.screen.rebuild(&self.window)?;
-        self.canvas = Canvas::new(gpu, self.screen.format());
+        self.canvas = Canvas::new(gpu, self.screen.configuration.format);
         // The panel's textures were on the card too; a new context uploads them again.
         self.ui = new_ui(Some(&self.ui));
         self.ui_state = new_ui_state(&self.ui, &self.window, &self.canvas);

@@ -17,19 +17,11 @@ use crate::{WindowError, canvas::Canvas};
 pub(crate) struct Screen {
     surface: Surface<'static>,
     instance: Instance,
-    configuration: SurfaceConfiguration,
-    size_px: [u32; 2],
+    /// Colours are painted as sRGB already; the surface does not convert them.
+    pub(crate) configuration: SurfaceConfiguration,
+    pub(crate) size_px: [u32; 2],
     /// Whether the surface can be used: asking an unconfigured one for a texture would end the program.
     is_configured: bool,
-}
-
-/// What the surface gives to paint into.
-enum Acquired {
-    Texture(SurfaceTexture),
-    /// Nothing now; it is worth trying again at once.
-    Later,
-    /// Nothing while the window is hidden; an event tells when that changes.
-    Hidden,
 }
 
 /// What came of painting a frame.
@@ -39,7 +31,7 @@ pub(crate) enum Painted {
     Shown,
     /// Nothing was painted; it is worth trying again at once.
     Later,
-    /// Nothing is painted while the window is hidden.
+    /// Nothing is painted while the window is hidden; an event tells when that changes.
     Hidden,
 }
 
@@ -71,17 +63,6 @@ impl Screen {
         Ok((screen, gpu))
     }
 
-    /// Format of the texture. Colours are painted as sRGB already; the surface does not convert them.
-    pub(crate) fn format(&self) -> TextureFormat {
-        self.configuration.format
-    }
-
-    /// Width and height of what is painted; 0 on some systems while the window is minimised. No side is larger than the
-    /// device's largest texture. A window across several screens may be larger; the system then enlarges the picture.
-    pub(crate) fn size_px(&self) -> [u32; 2] {
-        self.size_px
-    }
-
     /// The window has another size.
     pub(crate) fn resize(&mut self, canvas: &Canvas, size_px: [u32; 2]) {
         self.size_px = drawable_px(canvas.gpu(), size_px);
@@ -97,8 +78,8 @@ impl Screen {
         }
         [self.configuration.width, self.configuration.height] = self.size_px;
         let filters = [ErrorFilter::Validation, ErrorFilter::OutOfMemory, ErrorFilter::Internal];
-        let scopes = filters.map(|filter| gpu.device().push_error_scope(filter));
-        self.surface.configure(gpu.device(), &self.configuration);
+        let scopes = filters.map(|filter| gpu.device.push_error_scope(filter));
+        self.surface.configure(&gpu.device, &self.configuration);
         let ended = scopes.into_iter().rev().map(|scope| pollster::block_on(scope.pop()));
         // All scopes are ended, also if the first one caught an error.
         if let Some(source) = ended.collect::<Vec<_>>().into_iter().flatten().next() {
@@ -116,19 +97,22 @@ impl Screen {
         (primitives, screen): (&[ClippedPrimitive], &ScreenDescriptor),
     ) -> Result<Painted, WindowError> {
         let texture = match self.acquire(canvas, window)? {
-            Acquired::Texture(texture) => texture,
-            Acquired::Later => return Ok(Painted::Later),
-            Acquired::Hidden => return Ok(Painted::Hidden),
+            Ok(texture) => texture,
+            Err(none) => return Ok(none),
         };
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
         canvas.paint(primitives, screen, &view);
         window.pre_present_notify();
-        canvas.gpu().queue().present(texture);
+        canvas.gpu().queue.present(texture);
         Ok(Painted::Shown)
     }
 
-    /// Gets a texture to paint into. If the surface is outdated or lost, it is configured or made again, a few times at most.
-    fn acquire(&mut self, canvas: &Canvas, window: &Arc<Window>) -> Result<Acquired, WindowError> {
+    /// Gets a texture to paint into, or why there is none now. If the surface is outdated or lost, it is configured or made again, a few times at most.
+    fn acquire(
+        &mut self,
+        canvas: &Canvas,
+        window: &Arc<Window>,
+    ) -> Result<Result<SurfaceTexture, Painted>, WindowError> {
         let gpu = canvas.gpu();
         for _ in 0..3 {
             if !self.is_configured {
@@ -136,19 +120,19 @@ impl Screen {
             }
             if !self.is_configured {
                 // A side is 0 or the device is lost; then everything is made again before the next frame.
-                return Ok(Acquired::Later);
+                return Ok(Err(Painted::Later));
             }
             match self.surface.get_current_texture() {
                 CurrentSurfaceTexture::Success(texture)
                 | CurrentSurfaceTexture::Suboptimal(texture) => {
                     let size = texture.texture.size();
                     if [size.width, size.height] == self.size_px {
-                        return Ok(Acquired::Texture(texture));
+                        return Ok(Ok(texture));
                     }
                     self.is_configured = false;
                 }
-                CurrentSurfaceTexture::Timeout => return Ok(Acquired::Later),
-                CurrentSurfaceTexture::Occluded => return Ok(Acquired::Hidden),
+                CurrentSurfaceTexture::Timeout => return Ok(Err(Painted::Later)),
+                CurrentSurfaceTexture::Occluded => return Ok(Err(Painted::Hidden)),
                 CurrentSurfaceTexture::Outdated | CurrentSurfaceTexture::Validation => {
                     self.is_configured = false;
                 }
@@ -159,7 +143,7 @@ impl Screen {
             }
         }
         // The window changes faster than the surface can follow.
-        Ok(Acquired::Later)
+        Ok(Err(Painted::Later))
     }
 
     /// Makes a new surface and a new device in place of the lost ones.
@@ -186,9 +170,9 @@ fn new_surface(instance: &Instance, window: &Arc<Window>) -> Result<Surface<'sta
 }
 
 fn configuration(surface: &Surface<'_>, gpu: &Gpu) -> Result<SurfaceConfiguration, WindowError> {
-    let none = || WindowError::NoFormat { adapter: gpu.adapter_name().to_owned() };
-    let default = surface.get_default_config(gpu.adapter(), 1, 1).ok_or_else(none)?;
-    let formats = surface.get_capabilities(gpu.adapter()).formats;
+    let none = || WindowError::NoFormat { adapter: gpu.adapter_name.clone() };
+    let default = surface.get_default_config(&gpu.adapter, 1, 1).ok_or_else(none)?;
+    let formats = surface.get_capabilities(&gpu.adapter).formats;
     let format = [TextureFormat::Rgba8Unorm, TextureFormat::Bgra8Unorm]
         .into_iter()
         .find(|format| formats.contains(format))

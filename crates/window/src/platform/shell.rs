@@ -104,7 +104,7 @@ impl ApplicationHandler<News> for Shell {
 
     fn user_event(&mut self, _: &ActiveEventLoop, _: News) {
         if let Some(open) = &self.open {
-            open.request_redraw();
+            open.window.request_redraw();
         }
     }
 
@@ -117,7 +117,7 @@ impl ApplicationHandler<News> for Shell {
             WindowEvent::CloseRequested | WindowEvent::Destroyed => {
                 return self.end(event_loop, Ok(End::Closed));
             }
-            event if open.is_end_key(&event) => {
+            event if open.end_key.take(&event) => {
                 return self.end(event_loop, Ok(End::Closed));
             }
             // The window library panics where a window is gone before it has said so. A flight that is being recorded must
@@ -140,7 +140,7 @@ impl ApplicationHandler<News> for Shell {
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
         let now_s = self.now_s();
         let Some(open) = &mut self.open else { return };
-        if open.is_stopped() {
+        if (open.is_stopped)() {
             return self.end(event_loop, Ok(End::Stopped));
         }
         let due_s = open.wake(now_s).map_or(now_s + STOP_S, |due_s| due_s.min(now_s + STOP_S));

@@ -94,7 +94,7 @@ impl Show {
     fn open(&self, event_loop: &ActiveEventLoop) -> Result<Open, WindowError> {
         let window = new_window(event_loop, &self.name, self.size_px)?;
         let (screen, gpu) = Screen::new(event_loop, &window)?;
-        let canvas = Canvas::new(gpu, screen.format());
+        let canvas = Canvas::new(gpu, screen.configuration.format);
         window.request_redraw();
         Ok(Open { picture: None, canvas, screen, ui: egui::Context::default(), window })
     }
@@ -170,7 +170,7 @@ impl Open {
     }
 
     fn draw(&mut self) -> Result<(), WindowError> {
-        let size_px = self.screen.size_px();
+        let size_px = self.screen.size_px;
         if size_px.contains(&0) {
             return Ok(());
         }

@@ -105,7 +105,7 @@ impl StencilAreas {
         let rows = rows(view);
         let colors = gpu.buffer("area colors", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
         shared.set_frame(pass);
-        pass.set_bind_group(2, shared.ground(), &[]);
+        pass.set_bind_group(2, &shared.ground, &[]);
         pass.set_bind_group(3, &group(gpu, &self.layout, &[colors.as_entire_binding()]), &[]);
         for class in AreaStyle::TOP_FIRST {
             if view.style.area(class).is_drawn() {
@@ -126,7 +126,7 @@ impl StencilAreas {
             [(Counting::InFront, &self.in_front), (Counting::Behind, &self.behind)]
         {
             let has_class =
-                |tile: &&AreaTile<'_>| tile.1.classes().iter().any(|of| of.class == class);
+                |tile: &&AreaTile<'_>| tile.1.classes.iter().any(|of| of.class == class);
             let tiles: Vec<_> =
                 tiles.iter().filter(|tile| tile.2 == counting).filter(has_class).collect();
             let mut draw = |pipeline: &RenderPipeline, draw: &dyn Fn(&AreaBuffers, &mut _)| {

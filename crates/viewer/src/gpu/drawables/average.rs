@@ -31,7 +31,7 @@ impl Average {
     pub(crate) fn draw(&self, gpu: &Gpu, encoder: &mut CommandEncoder, picture: &Picture) {
         let Some(samples) = picture.samples() else { return };
         let bound = textures(gpu, &self.layout, &[samples]);
-        let per_side = picture.samples_per_side();
+        let per_side = picture.samples_per_side;
         let pipeline = self.pipelines[per_side as usize - 2].get_or_init(|| {
             let constants = [("PER_SIDE", f64::from(per_side))];
             let groups = [Some(&self.layout)];

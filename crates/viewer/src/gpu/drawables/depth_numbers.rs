@@ -15,7 +15,7 @@ pub(crate) const SHADER: Shader = shader!("depth numbers": "screen", "depth_numb
 
 /// The values of a depth texture, in a texture that can be copied in parts.
 pub(crate) fn depth_numbers(gpu: &Gpu, depth: &TargetTexture) -> TargetTexture {
-    let size_px = [depth.texture().width(), depth.texture().height()];
+    let size_px = [depth.texture.width(), depth.texture.height()];
     let numbers = TargetTexture::new(gpu, "depth numbers", NUMBER, size_px);
     let layout = layout(&gpu.device, "depth numbers", &[texture(0, UNFILTERED)]);
     let bound = textures(gpu, &layout, &[&depth.view]);
@@ -24,9 +24,8 @@ pub(crate) fn depth_numbers(gpu: &Gpu, depth: &TargetTexture) -> TargetTexture {
         ..PipelineRecipe::full_screen(SHADER, &[Some(&layout)], &[])
     }
     .build(&gpu.device);
-    let descriptor = wgpu::CommandEncoderDescriptor { label: Some("depth numbers") };
-    let mut encoder = gpu.device.create_command_encoder(&descriptor);
-    full_screen(&mut encoder, "depth numbers", &numbers.view, &pipeline, &[&bound]);
-    gpu.queue.submit([encoder.finish()]);
+    gpu.submit("depth numbers", |encoder| {
+        full_screen(encoder, "depth numbers", &numbers.view, &pipeline, &[&bound]);
+    });
     numbers
 }

@@ -57,7 +57,7 @@ impl Difference {
         second: &Targets,
         into: &Picture,
     ) {
-        let views = [&first.roads.labels.view, &second.roads.labels.view, first.picture().drawn()];
+        let views = [&first.roads.labels.view, &second.roads.labels.view, first.picture.drawn()];
         let bound = textures(gpu, &self.layout, &views);
         full_screen(encoder, "difference", into.drawn(), &self.pipeline, &[&bound]);
     }

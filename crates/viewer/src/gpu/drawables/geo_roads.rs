@@ -2,47 +2,28 @@
 
 use std::ops::Range;
 
-use wgpu::{Device, vertex_attr_array};
+use wgpu::{Face, VertexAttribute, vertex_attr_array};
 
 use super::super::{
-    pipeline::{ENTRIES, Shader, shader},
-    road_instances::{RoadInstance, RoadPipeline, RoadRecipe, own_width_value},
-    shared_bindings::SharedLayouts,
+    pipeline::{Shader, shader},
+    road_instances::{RoadInstance, own_width_value},
 };
 use crate::tiles::{Bed, RoadSegment};
 
-pub(crate) const SHADER: Shader =
-    shader!("roads": "common", "tile", "drawn_ground", "coverage", "roads");
-
-/// Bytes of an instance: two plan positions as two f32 each, two shares, two slopes, a height and a width factor as f32,
-/// class, flags and look as u32, eight bounds as f16, own width, two numbers for dashes and length of
-/// the network's part as f32.
-const INSTANCE_BYTES: u64 = 76;
-/// Corners of a quad, as `shaders/roads.wgsl` counts them.
-const CORNERS: Range<u32> = 0..4;
-
-/// Draws roads as geometry on the ground.
-pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline {
-    let recipe = RoadRecipe {
-        shader: SHADER,
-        instance_bytes: INSTANCE_BYTES,
-        attributes: &vertex_attr_array![
-            0 => Float32x4, 1 => Float32x4, 2 => Float32x2, 3 => Uint32, 4 => Float16x4, 5 => Float16x4,
-            6 => Float32, 7 => Float32x2, 8 => Float32
-        ],
-        // A quad may face any direction, so none is culled.
-        cull: None,
-        corners: CORNERS,
-        drawn: &layouts.ground,
-        entries: ENTRIES,
-        depth: None,
-        has_labels: true,
-    };
-    RoadPipeline::new(device, layouts, &recipe)
-}
-
 impl RoadInstance for RoadSegment {
-    type Words = [u32; INSTANCE_BYTES as usize / 4];
+    /// Two plan positions as two f32 each, two shares, two slopes, a height and a width factor as f32, class, flags and look as u32, eight bounds as
+    /// f16, own width, two numbers for dashes and length of the network's part as f32.
+    type Words = [u32; 19];
+
+    const SHADER: Shader = shader!("roads": "common", "tile", "drawn_ground", "coverage", "roads");
+    const ATTRIBUTES: &[VertexAttribute] = &vertex_attr_array![
+        0 => Float32x4, 1 => Float32x4, 2 => Float32x2, 3 => Uint32, 4 => Float16x4, 5 => Float16x4,
+        6 => Float32, 7 => Float32x2, 8 => Float32
+    ];
+    /// The corners of a quad, as `shaders/roads.wgsl` counts them.
+    const CORNERS: Range<u32> = 0..4;
+    /// A quad may face any direction.
+    const CULL: Option<Face> = None;
 
     fn words(&self) -> Self::Words {
         let Bed { slopes, rises, most_m: [cell, cells, margin], leaves_tile } = self.bed;
@@ -51,15 +32,15 @@ impl RoadInstance for RoadSegment {
         let flags = [at_start, at_end].into_iter().chain(leaves_tile);
         let flags = flags.zip(4..).fold(0, |flags, (flag, bit)| flags | u32::from(flag) << bit);
         let [start, end] = self.flat_ends.map(u32::from);
-        let flags = flags | self.look.number() << 9 | start << 12 | end << 13;
+        let flags = flags | (self.kind.look as u32) << 9 | start << 12 | end << 13;
         let bounds = |pair: [f32; 2]| bytemuck::cast::<[u16; 2], u32>(pair.map(f16_above));
         let [[a, b], [c, d], [e, f], [g, h]] =
             [self.start_in_tile, self.end_in_tile, self.shares, slopes].map(numbers);
         let [height, width] = numbers([self.height_in_tile, self.width_factor]);
-        let class = u32::from(self.class.number()) | flags;
+        let class = u32::from(self.kind.class.number()) | flags;
         let [rises, cell, cells, margin] = [rises, cell, cells, margin].map(bounds);
-        let [dash_start, dash_rate] = numbers(self.dash.numbers());
-        let [own_width, part] = numbers([own_width_value(self.own_width), self.part_m]);
+        let [dash_start, dash_rate] = numbers(self.dash.0);
+        let [own_width, part] = numbers([own_width_value(self.kind.own_width), self.part_m]);
         [
             a, b, c, d, e, f, g, h, height, width, class, rises, cell, cells, margin, own_width,
             dash_start, dash_rate, part,

@@ -19,9 +19,7 @@ pub(crate) const SHADER: Shader = shader!("blocks": "common", "screen", "blocks"
 pub(crate) const BLOCK_CORNERS: u32 = 6;
 
 /// What shaders are told of blocks.
-pub(crate) fn block_constant() -> [(&'static str, f64); 1] {
-    [("BLOCK", f64::from(BLOCK_SIDE))]
-}
+pub(crate) const BLOCK: [(&str, f64); 1] = [("BLOCK", BLOCK_SIDE as f64)];
 
 pub(crate) struct LabelBlocks {
     layout: BindGroupLayout,
@@ -32,10 +30,9 @@ impl LabelBlocks {
     pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
         let layout = layout(device, "blocks", &[texture(0, UNFILTERED)]);
         let groups = [Some(&layouts.frame), Some(&layout)];
-        let constants = block_constant();
         let recipe = PipelineRecipe {
             targets: &[(LABEL, ColorWrites::ALL)],
-            ..PipelineRecipe::full_screen(SHADER, &groups, &constants)
+            ..PipelineRecipe::full_screen(SHADER, &groups, &BLOCK)
         };
         let pipeline = recipe.build(device);
         Self { layout, pipeline }
@@ -50,7 +47,7 @@ impl LabelBlocks {
         targets: &LabelTargets,
     ) {
         let bound = textures(gpu, &self.layout, &[&targets.labels.view]);
-        let groups = [shared.frame(), &bound];
+        let groups = [&shared.frame, &bound];
         full_screen(encoder, "blocks", &targets.blocks.view, &self.pipeline, &groups);
     }
 }

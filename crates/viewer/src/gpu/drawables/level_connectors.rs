@@ -28,28 +28,18 @@ pub(crate) struct LevelConnectors {
 
 impl LevelConnectors {
     /// Finds the connectors between roads on the ground of `tiles` and uploads their volumes, each relative to the reference point of its finer
-    /// tile. `reference_of` gives that point for an index of `tiles`; `shown` says which classes are shown on each of them.
-    pub(crate) fn on_ground(
-        gpu: &Gpu,
-        tiles: &[BorderTile<'_>],
-        reference_of: impl Fn(usize) -> [f64; 3],
-        shown: &[ClassSet],
-    ) -> Self {
+    /// tile. `shown` says which classes are shown on each of them.
+    pub(crate) fn on_ground(gpu: &Gpu, tiles: &[BorderTile<'_>], shown: &[ClassSet]) -> Self {
         Self::new(gpu, tiles, shown, |connector| {
-            let volume = volume(connector, reference_of(connector.fine));
+            let volume = volume(connector, tiles[connector.fine].reference_m);
             sv_roads::instance(&volume, connector.coarse as u32 + 1)
         })
     }
 
     /// The same between decks.
-    pub(crate) fn of_decks(
-        gpu: &Gpu,
-        tiles: &[BorderTile<'_>],
-        reference_of: impl Fn(usize) -> [f64; 3],
-        shown: &[ClassSet],
-    ) -> Self {
+    pub(crate) fn of_decks(gpu: &Gpu, tiles: &[BorderTile<'_>], shown: &[ClassSet]) -> Self {
         Self::new(gpu, tiles, shown, |connector| {
-            piece(connector, reference_of(connector.fine)).words()
+            piece(connector, tiles[connector.fine].reference_m).words()
         })
     }
 
@@ -61,7 +51,7 @@ impl LevelConnectors {
     ) -> Self {
         let mut list = level_connectors(tiles);
         list.retain(|connector| {
-            shown[connector.fine].or(shown[connector.coarse]).contains(connector.class)
+            shown[connector.fine].or(shown[connector.coarse]).contains(connector.kind.class)
         });
         let all: Vec<I> = list.iter().map(instance).collect();
         let buffer = || gpu.buffer("connectors", bytemuck::cast_slice(&all), BufferUsages::VERTEX);
@@ -110,9 +100,7 @@ fn volume(connector: &LevelConnector, reference_m: [f64; 3]) -> RoadVolume {
         height_range_in_tile,
         near: NearHeights { range_in_tile: height_range_in_tile, rise: 0.0 },
         width_factor: connector.width_factor,
-        class: connector.class,
-        own_width: connector.own_width,
-        look: connector.look,
+        kind: connector.kind,
         // It goes on in two tiles.
         part_m: OPEN_M,
         dash: DashPlace::flat(dash_of_segment_m(connector.ends_m)),
@@ -132,11 +120,9 @@ fn piece(connector: &LevelConnector, reference_m: [f64; 3]) -> DeckPiece {
         mitres: [[0.0; 2]; 2],
         lands: [false; 2],
         deck_m: OPEN_M,
-        slab_m: (slab_thickness_m(connector.class) + (second_m - first_m).abs()) as f32,
+        slab_m: (slab_thickness_m(connector.kind.class) + (second_m - first_m).abs()) as f32,
         width_factor: connector.width_factor,
-        class: connector.class,
-        own_width: connector.own_width,
-        look: connector.look,
+        kind: connector.kind,
         part_m: OPEN_M,
         dash: DashPlace::flat(dash_of_segment_m(connector.ends_m)),
     }

@@ -4,7 +4,8 @@ use std::{collections::BTreeSet, fs, path::PathBuf};
 
 use wgpu::naga::{Module, TypeInner, front::wgsl, valid};
 
-use super::{composite, sv_roads, terrain};
+use super::{composite, terrain};
+use crate::{gpu::road_instances::RoadInstance as _, tiles::RoadVolume};
 
 /// A `shader!` that was found in the source code of a drawable.
 struct FoundShader {
@@ -90,7 +91,7 @@ fn uniform_blocks_are_as_long_as_shaders_declare_them() {
         wall_m: 0.0,
         cell_px: f64::INFINITY,
         latitude_deg: 47.0,
-        wireframe: crate::Wireframe::Hidden,
+        is_wireframe: false,
     };
     let blocks = [
         ("Frame", crate::gpu::uniforms::frame_rows(&view, 1), "common"),
@@ -112,7 +113,7 @@ fn uniform_blocks_are_as_long_as_shaders_declare_them() {
 /// Every face of a volume's box is drawn, and its corners are counter-clockwise seen from outside.
 #[test]
 fn the_strip_of_a_volume_goes_around_its_box() {
-    let source = sv_roads::SHADER.1;
+    let source = RoadVolume::SHADER.1;
     let list = source.split("STRIP = array<u32, 14>(").nth(1).unwrap().split(')').next();
     let strip: Vec<u32> =
         list.unwrap().split(',').map(|k| k.trim().trim_end_matches('u').parse().unwrap()).collect();

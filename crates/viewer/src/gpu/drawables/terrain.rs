@@ -18,7 +18,7 @@ use super::super::{
 };
 use corniche_styles::{Light, MOST_TINT_STOPS, Style};
 
-use crate::frame_view::{FrameView, Wireframe};
+use crate::frame_view::FrameView;
 
 pub(crate) const SHADER: Shader =
     shader!("terrain": "common", "tile", "ground_look", "relief", "photo", "terrain");
@@ -95,12 +95,12 @@ impl Terrain {
                 draw(ground, pass);
             }
         };
-        draw(&self.surface, &GroundBuffers::draw_surface);
-        draw(&self.skirts, &GroundBuffers::draw_skirts);
+        draw(&self.surface, &|ground, pass| ground.draw_part(pass, &ground.surface));
+        draw(&self.skirts, &|ground, pass| ground.draw_part(pass, &ground.skirts));
         if view.wall_m > 0.0 {
-            draw(&self.walls, &GroundBuffers::draw_walls);
+            draw(&self.walls, &|ground, pass| ground.draw_part(pass, &ground.walls));
         }
-        if view.wireframe == Wireframe::Shown {
+        if view.is_wireframe {
             draw(&self.wires, &|ground, pass| ground.draw_edges(gpu, pass));
         }
     }
@@ -122,7 +122,7 @@ pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
             stops.len() as f32,
         ],
         color(*haze, light.valley_haze),
-        color(light.shadow, (1.0 / view.camera.focus_m()) as f32),
+        color(light.shadow, (1.0 / view.camera.focus_m) as f32),
         color(light.sunlit, (view.wall_m * view.vertical_scale()) as f32),
         color(*water, *photo),
         color(*wall, view.blend_px() as f32),

@@ -12,12 +12,11 @@ use super::{
         formats::COLOR,
         inspection::{Owner, owners},
         seen::{Seen, SeenSamples, heights_m},
-        shared_bindings::SharedBindings,
         target_texture::TargetTexture,
         targets::Targets,
-        tile_buffers::{DrawTile, TileBuffers},
+        tile_buffers::DrawTile,
     },
-    LabelledLines, Renderer, areas_of,
+    DrawnRoads, FramePasses, Renderer, areas_of,
 };
 use crate::{frame_view::FrameView, layer_view::view_of_lines, tiles::LineLayer};
 
@@ -38,10 +37,10 @@ impl Renderer {
     ) -> Result<Seen, ReadBackError> {
         let boundaries = self.boundary_labels(gpu, view, tiles, targets)?;
         let areas = self.area_classes(gpu, view, tiles, targets)?;
-        let samples_per_side = targets.samples_per_side();
+        let samples_per_side = targets.picture.samples_per_side;
         let seen = SeenSamples {
             per_side: samples_per_side,
-            columns: targets.size_px()[0] * samples_per_side,
+            columns: targets.picture.size_px[0] * samples_per_side,
             roads: &targets.read_labels(gpu)?,
             decks: targets.read_deck_labels(gpu)?.as_deref(),
             boundaries: boundaries.as_deref(),
@@ -71,20 +70,15 @@ impl Renderer {
     ) -> Result<Option<Vec<u8>>, ReadBackError> {
         let layer = LineLayer::Boundaries;
         let style = layer.style_of(view.style);
-        let view = view_of_lines(view, &style);
-        let method = view.roads.method;
-        let lines =
-            LabelledLines::new(gpu, tiles, &view, |tile: &TileBuffers| tile.lines(layer, method));
+        let view = &view_of_lines(view, &style);
+        let lines = DrawnRoads::of_layer(gpu, tiles, view, layer);
         if lines.is_empty() {
             return Ok(None);
         }
-        let tile_uniforms = tiles.iter().map(DrawTile::uniforms);
-        let shared = SharedBindings::new(gpu, &self.layouts, &view, tile_uniforms, targets);
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("boundary labels") };
-        let mut encoder = gpu.device.create_command_encoder(&descriptor);
+        let shared = &self.shared(gpu, view, tiles, targets);
+        let passes = FramePasses { renderer: self, gpu, shared, view, targets };
         let labels = targets.lines(gpu);
-        self.labels_pass(gpu, &mut encoder, &shared, &lines, &view, labels);
-        gpu.queue.submit([encoder.finish()]);
+        gpu.submit("boundary labels", |encoder| passes.labels(encoder, &lines, labels));
         labels.labels.read(gpu).map(Some)
     }
 
@@ -97,20 +91,17 @@ impl Renderer {
         targets: &Targets,
     ) -> Result<Option<Vec<u8>>, ReadBackError> {
         let style = with_numbers_as_colors(view.style);
-        let view = FrameView { style: &style, ..*view };
-        let areas = areas_of(tiles, &view, DrawTile::areas);
+        let view = &FrameView { style: &style, ..*view };
+        let areas = areas_of(tiles, view, |tile| &tile.areas);
         if areas.is_empty() {
             return Ok(None);
         }
-        let tile_uniforms = tiles.iter().map(DrawTile::uniforms);
-        let shared = SharedBindings::new(gpu, &self.layouts, &view, tile_uniforms, targets);
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("area classes") };
-        let mut encoder = gpu.device.create_command_encoder(&descriptor);
+        let shared = &self.shared(gpu, view, tiles, targets);
+        let passes = FramePasses { renderer: self, gpu, shared, view, targets };
         // A new texture is all 0.
-        let sampled_px = targets.size_px().map(|side| side * targets.samples_per_side());
+        let sampled_px = targets.picture.sampled_px();
         let classes = TargetTexture::new(gpu, "area classes", COLOR, sampled_px);
-        self.areas_pass(gpu, &mut encoder, &shared, &areas, &view, (&classes, targets));
-        gpu.queue.submit([encoder.finish()]);
+        gpu.submit("area classes", |encoder| passes.areas(encoder, &areas, &classes));
         let texels = classes.read(gpu)?;
         let numbers = texels.chunks_exact(COLOR_BYTES).map(|texel| texel[0] / CLASS_STEP);
         Ok(Some(numbers.collect()))

@@ -2,7 +2,7 @@
 
 use corniche_drape::{ClippedPart, OwnedBorders};
 use corniche_geom::{GridFrame, LatticePoint, Polyline, TileId, TooMuchWork, Work};
-use corniche_roads::{FunctionalRoadClass, OwnWidth};
+use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
 use super::{
@@ -10,71 +10,74 @@ use super::{
     dashes::{DashPlaces, GroundLengths},
 };
 use crate::tiles::{
-    DashPlace, GroundLine, InNet, OffGround, PlanScale, RoadLook, RoadSegments, RoadVolumes,
+    DashPlace, GroundLine, InNet, OffGround, PlanScale, RoadKind, RoadSegments, RoadVolumes,
     TileLines, relief::Relief, roads::PlanLine, shares_in,
 };
 
 /// Segments longer than so many cells of the level are divided, so that dashes follow the ground.
 const LONGEST_CELLS: f64 = 8.0;
 
-/// The ground of a tile as lines need it.
-pub(crate) struct TileGround<'a> {
+/// The ground of a tile on which lines are laid.
+pub struct TileSurface {
     pub(crate) id: TileId,
-    pub(crate) surface: &'a Surface,
-    pub(crate) frame: &'a GridFrame,
+    pub(crate) surface: Surface,
+    pub(crate) frame: GridFrame,
     /// The tile's reference point.
     pub(crate) reference_m: [f64; 3],
     /// Lines are not drawn beyond this half width, working metres.
     pub(crate) width_margin_m: f64,
-    pub(crate) scale: &'a PlanScale,
+    pub(crate) scale: PlanScale,
     /// World height of a metre of true height without exaggeration.
     pub(crate) vertical_scale: f64,
     /// Steps that laying lines may take.
     pub(crate) most_steps: u64,
 }
 
-/// Lays lines on a tile's ground. Lines that are not near it give nothing. An error when that takes too much work: it follows from the triangles
-/// that lines cross.
-pub(crate) fn lay(
-    lines: &[LayerLine],
-    on: &TileGround<'_>,
-    methods: LineMethods,
-) -> Result<TileLayer, TooMuchWork> {
-    let work = &Work::new(on.most_steps);
-    let mut ground = Vec::new();
-    let mut plan = Vec::new();
-    for line in lines {
-        let Some(class) = FunctionalRoadClass::new(line.style) else { continue };
-        let Ok(path) = Polyline::new(divided(&line.points, on, work)?) else { continue };
-        let laid = on_ground(&path, line.id, class, on, work)?;
-        if methods != LineMethods::Geometry {
-            plan.extend(in_plan(&path, line.id, class, &laid.places, (on, work))?);
+impl TileSurface {
+    /// Lays lines on the ground. Lines that are not near it give nothing.
+    ///
+    /// # Errors
+    /// When that takes too much work: it follows from the triangles that lines cross.
+    pub fn lay(&self, lines: &[LayerLine], methods: LineMethods) -> Result<TileLayer, TooMuchWork> {
+        let work = &Work::new(self.most_steps);
+        let mut ground = Vec::new();
+        let mut plan = Vec::new();
+        for line in lines {
+            let Some(class) = FunctionalRoadClass::new(line.style) else { continue };
+            let Ok(path) = Polyline::new(divided(&line.points, self, work)?) else { continue };
+            let laid = on_ground(&path, line.id, class, self, work)?;
+            if methods != LineMethods::Geometry {
+                plan.extend(in_plan(&path, line.id, class, &laid.places, (self, work))?);
+            }
+            if methods != LineMethods::ShadowVolumes {
+                ground.extend(laid.lines);
+            }
         }
-        if methods != LineMethods::ShadowVolumes {
-            ground.extend(laid.lines);
-        }
+        let bounds = self.frame.tile_bounds(self.id);
+        let relief =
+            Relief::new(self.id, Some(&self.surface), &self.frame, self.width_margin_m, work);
+        let wide = relief.wide(&ground);
+        let none = TileLines::default();
+        let decks = OffGround::new(&none, bounds, work);
+        let (on_ground, _) = InNet::all_of(&ground, &decks, 0.0);
+        let (in_plan, _) = InNet::all_of(&plan, &decks, self.width_margin_m);
+        let segments =
+            RoadSegments::of_lines(&on_ground, &decks, self.reference_m, &self.scale, |piece| {
+                relief.bed(piece, wide.as_ref())
+            });
+        let volumes = RoadVolumes::new(&in_plan, &decks, self.reference_m, &self.scale, |ends_m| {
+            relief.near(ends_m)
+        });
+        work.check()?;
+        Ok(TileLayer { segments, volumes })
     }
-    let bounds = on.frame.tile_bounds(on.id);
-    let relief = Relief::new(on.id, Some(on.surface), on.frame, on.width_margin_m, work);
-    let wide = relief.wide(&ground);
-    let none = TileLines::default();
-    let decks = OffGround::new(&none, bounds, work);
-    let (on_ground, _) = InNet::all_of(&ground, &decks, 0.0);
-    let (in_plan, _) = InNet::all_of(&plan, &decks, on.width_margin_m);
-    let segments = RoadSegments::of_lines(&on_ground, &decks, on.reference_m, on.scale, |piece| {
-        relief.bed(piece, wide.as_ref())
-    });
-    let volumes =
-        RoadVolumes::new(&in_plan, &decks, on.reference_m, on.scale, |ends_m| relief.near(ends_m));
-    work.check()?;
-    Ok(TileLayer { segments, volumes })
 }
 
 /// The points of a line, with points between those that are far from each other, on the lattice, as far as they lie near the tile. Each lies
 /// within half a step of it beside the line.
 fn divided(
     points: &[LatticePoint],
-    on: &TileGround<'_>,
+    on: &TileSurface,
     work: &Work,
 ) -> Result<Vec<LatticePoint>, TooMuchWork> {
     let [east, north] = on.frame.node_steps(on.id.z());
@@ -115,7 +118,7 @@ fn on_ground(
     path: &Polyline,
     id: i64,
     class: FunctionalRoadClass,
-    on: &TileGround<'_>,
+    on: &TileSurface,
     work: &Work,
 ) -> Result<Laid, TooMuchWork> {
     let frame = on.frame;
@@ -125,8 +128,8 @@ fn on_ground(
     // With each line the segments of `path` that its source segments are parts of.
     let mut found: Vec<(GroundLine, Vec<usize>)> = Vec::new();
     for part in corniche_drape::clip_parts(path, &tile, OwnedBorders::ALL) {
-        for draped in corniche_drape::drape_within(&part.line, on.surface, work)?.lines {
-            let Ok(positions) = corniche_drape::positions(&draped, on.surface) else { continue };
+        for draped in corniche_drape::drape_within(&part.line, &on.surface, work)?.lines {
+            let Ok(positions) = corniche_drape::positions(&draped, &on.surface) else { continue };
             let points_m: Vec<[f64; 3]> = positions
                 .into_iter()
                 .map(|[u, v, height_m]| {
@@ -143,9 +146,7 @@ fn on_ground(
                 sources.into_iter().map(|ends| ends.map(|point| frame.position_m(point)));
             let line = GroundLine {
                 way_id: id,
-                class,
-                own_width: OwnWidth::Unknown,
-                look: RoadLook::Plain,
+                kind: RoadKind::plain(class),
                 points_m,
                 sources_m: sources_m.collect(),
                 dashes: None,
@@ -187,14 +188,14 @@ fn in_plan(
     id: i64,
     class: FunctionalRoadClass,
     places: &DashPlaces,
-    (on, work): (&TileGround<'_>, &Work),
+    (on, work): (&TileSurface, &Work),
 ) -> Result<Vec<PlanLine>, TooMuchWork> {
     let frame = on.frame;
     let margin = (on.width_margin_m / frame.lattice_step_m()).floor() as i64;
     let around = frame.tile_lattice_bounds(on.id).expanded(margin);
     let mut lines = Vec::new();
     for part in corniche_drape::clip_parts(path, &around, OwnedBorders::ALL) {
-        for line in corniche_drape::extrude_within(&part.line, on.surface, margin, work)? {
+        for line in corniche_drape::extrude_within(&part.line, &on.surface, margin, work)? {
             let points_m: Vec<[f64; 2]> =
                 line.points.iter().map(|&point| frame.position_m(point)).collect();
             let sources: Vec<[LatticePoint; 2]> = line.points.array_windows().copied().collect();
@@ -203,9 +204,7 @@ fn in_plan(
                 segments.iter().zip(&points_m).map(|(&segment, at)| places.at(segment, *at));
             lines.push(PlanLine {
                 way_id: id,
-                class,
-                own_width: OwnWidth::Unknown,
-                look: RoadLook::Plain,
+                kind: RoadKind::plain(class),
                 dashes: Some(dashes.collect()),
                 points_m,
                 ground_range_m: line.ground_range_m,

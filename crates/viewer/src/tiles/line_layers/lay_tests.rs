@@ -34,13 +34,13 @@ fn laid_on(surface: &Surface, lines_m: &[&[[f64; 2]]]) -> Result<TileLayer, TooM
     let tile = frame.tile_bounds(TileId::ROOT);
     let place =
         |&[east, south]: &[f64; 2]| frame.snap([tile.min_x + east, tile.max_y - south]).unwrap();
-    let on = TileGround {
+    let on = TileSurface {
         id: TileId::ROOT,
-        surface,
-        frame: &frame,
+        surface: surface.clone(),
+        frame,
         reference_m: [tile.min_x, tile.max_y, 0.0],
         width_margin_m: 40.0,
-        scale: &PlanScale::uniform([1.0; 2]),
+        scale: PlanScale::uniform([1.0; 2]),
         vertical_scale: 1.0,
         most_steps: FEW_STEPS,
     };
@@ -49,11 +49,11 @@ fn laid_on(surface: &Surface, lines_m: &[&[[f64; 2]]]) -> Result<TileLayer, TooM
         style: 2,
         points: points_m.iter().map(place).collect(),
     };
-    lay(&lines_m.iter().map(line).collect::<Vec<_>>(), &on, LineMethods::Both)
+    on.lay(&lines_m.iter().map(line).collect::<Vec<_>>(), LineMethods::Both)
 }
 
 fn starts_and_rates(layer: &TileLayer) -> Vec<([f32; 2], [f32; 2])> {
-    layer.segments.all().iter().map(|of| (of.start_in_tile, of.dash.numbers())).collect()
+    layer.segments.all().iter().map(|of| (of.start_in_tile, of.dash.0)).collect()
 }
 
 /// 150 m east on a slope of 3 : 4 are 187.5 m of ground; north along the slope a metre is a metre.
@@ -75,8 +75,7 @@ fn dashes_are_as_long_on_a_slope_as_on_level_ground() {
 fn both_methods_have_dashes_at_the_same_places() {
     let layer = laid(&[[-500.0, 900.0], [700.0, 3000.0], [4000.0, 2500.0], [6000.0, 5000.0]]);
     let geo = starts_and_rates(&layer);
-    let sv: Vec<_> =
-        layer.volumes.all().iter().map(|of| (of.start_in_tile, of.dash.numbers())).collect();
+    let sv: Vec<_> = layer.volumes.all().iter().map(|of| (of.start_in_tile, of.dash.0)).collect();
     let mut compared = 0;
     for (start, dash) in &geo {
         let same =

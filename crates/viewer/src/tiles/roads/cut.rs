@@ -57,7 +57,7 @@ pub(crate) struct OffGround<'a> {
     portals: BTreeSet<[u64; 2]>,
     /// The ways of bridges, in order of their ids.
     bridges: &'a [i64],
-    tile: Bounds,
+    pub(crate) tile: Bounds,
     work: &'a Work,
 }
 
@@ -72,11 +72,6 @@ impl<'a> OffGround<'a> {
         }
         let portals = portals.iter().map(|at| at.map(f64::to_bits)).collect();
         Self { by_way, lines: decks, portals, bridges, tile, work }
-    }
-
-    /// The tile that they are in.
-    pub(crate) fn tile(&self) -> Bounds {
-        self.tile
     }
 
     /// Where they begin and end.
@@ -331,17 +326,9 @@ impl Kept {
             trim(&mut sources_m, 1, at);
             sources_m.reverse();
         }
-        let GroundLine { way_id, class, own_width, look, .. } = *line;
-        let dashes = None;
-        (points_m.len() >= 2).then_some(GroundLine {
-            way_id,
-            class,
-            own_width,
-            look,
-            points_m,
-            sources_m,
-            dashes,
-        })
+        let GroundLine { way_id, kind, .. } = *line;
+        let cut = GroundLine { way_id, kind, points_m, sources_m, dashes: None };
+        (cut.points_m.len() >= 2).then_some(cut)
     }
 
     /// This part of a line in plan.
@@ -361,17 +348,9 @@ impl Kept {
         if let (Some((_, at)), Some(last)) = (self.to, points_m.last_mut()) {
             *last = at;
         }
-        let PlanLine { way_id, class, own_width, look, .. } = *line;
-        let dashes = None;
-        (points_m.len() >= 2).then_some(PlanLine {
-            way_id,
-            class,
-            own_width,
-            look,
-            points_m,
-            ground_range_m,
-            dashes,
-        })
+        let PlanLine { way_id, kind, .. } = *line;
+        let cut = PlanLine { way_id, kind, points_m, ground_range_m, dashes: None };
+        (cut.points_m.len() >= 2).then_some(cut)
     }
 
     /// Whether a deck begins or ends in a segment.

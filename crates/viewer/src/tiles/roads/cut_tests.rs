@@ -1,9 +1,10 @@
 //! What is on decks is taken out of lines, and nothing else.
 
-use corniche_roads::{FunctionalRoadClass, OwnWidth};
+use corniche_roads::FunctionalRoadClass;
 use proptest::prelude::*;
 
-use super::{super::RoadLook, *};
+use super::*;
+use crate::tiles::RoadKind;
 
 const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100.0, max_y: 100.0 };
 
@@ -14,9 +15,7 @@ fn class() -> FunctionalRoadClass {
 fn deck(way_id: i64, points: &[[f64; 2]]) -> DeckLine {
     DeckLine {
         way_id,
-        class: class(),
-        own_width: OwnWidth::Unknown,
-        look: RoadLook::Plain,
+        kind: RoadKind::plain(class()),
         points_m: points.iter().map(|[x, y]| [*x, *y, 9.0]).collect(),
         on_ground: [false; 2],
     }
@@ -34,9 +33,7 @@ fn on_ground(points: &[[f64; 2]]) -> GroundLine {
 fn in_plan(points: &[[f64; 2]]) -> PlanLine {
     PlanLine {
         way_id: 1,
-        class: class(),
-        own_width: OwnWidth::Unknown,
-        look: RoadLook::Plain,
+        kind: RoadKind::plain(class()),
         points_m: points.to_vec(),
         ground_range_m: vec![[0.0, 1.0]; points.len() - 1],
         dashes: None,

@@ -6,19 +6,15 @@ use corniche_geom::Bounds;
 /// dashes are.
 const WRAP_M: f64 = 65_536.0;
 
-/// Where dashes are on a segment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DashPlace {
-    /// How far along the line the segment's start is, working metres.
-    start_m: f32,
-    /// So many such metres make a metre of the segment in plan: more than 1 uphill, if dashes lie on the ground.
-    rate: f32,
-}
+/// Where dashes are on a segment, as shaders take it: how far along the line the segment's start is, working metres, and how many such metres make a
+/// metre of the segment in plan, more than 1 uphill, if dashes lie on the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DashPlace(pub(crate) [f32; 2]);
 
 impl DashPlace {
     /// The dashes of a segment that starts this far along its line, with so many metres along the line for each metre in plan.
     pub(crate) fn new(start_m: f64, rate: f64) -> Self {
-        Self { start_m: start_m.rem_euclid(WRAP_M) as f32, rate: rate as f32 }
+        Self([start_m.rem_euclid(WRAP_M) as f32, rate as f32])
     }
 
     /// The same, with dashes as long as they are in plan.
@@ -28,17 +24,8 @@ impl DashPlace {
 
     /// The place that is so far along the line from this one, in plan.
     pub(crate) fn moved(self, by_m: f64) -> Self {
-        Self::new(f64::from(self.start_m) + f64::from(self.rate) * by_m, f64::from(self.rate))
-    }
-
-    /// The numbers that shaders take: start and rate.
-    pub(crate) const fn numbers(self) -> [f32; 2] {
-        [self.start_m, self.rate]
-    }
-
-    /// The place of dashes that these numbers stand for.
-    pub(crate) const fn of_numbers([start_m, rate]: [f32; 2]) -> Self {
-        Self { start_m, rate }
+        let [start_m, rate] = self.0.map(f64::from);
+        Self::new(start_m + rate * by_m, rate)
     }
 }
 

@@ -5,7 +5,7 @@ use super::*;
 const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100.0, max_y: 100.0 };
 
 fn starts_m(vertices_m: &[[f64; 2]]) -> Vec<f32> {
-    dash_starts(vertices_m, TILE).iter().map(|place| place.numbers()[0]).collect()
+    dash_starts(vertices_m, TILE).iter().map(|place| place.0[0]).collect()
 }
 
 fn check(vertices_m: &[[f64; 2]], expected_m: &[f64]) {

@@ -1,23 +1,19 @@
 //! Bridges of a tile as lines in space.
 
 use corniche_geom::GridFrame;
-use corniche_roads::{FunctionalRoadClass, OwnWidth, Structure};
+use corniche_roads::Structure;
 use corniche_tileset::{SpanHeight, SpanRun, TilePayload};
 use corniche_tin::Surface;
 
-use super::{RoadLook, flat_ends::LineEnds, look::tagged};
+use super::{RoadKind, flat_ends::LineEnds};
 
 /// A bridge, or a part of one, above the ground of its tile.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeckLine {
     /// OSM's id of the way.
     pub way_id: i64,
-    /// Functional road class.
-    pub class: FunctionalRoadClass,
-    /// What its tags say of its width.
-    pub own_width: OwnWidth,
     /// What it is.
-    pub look: RoadLook,
+    pub kind: RoadKind,
     /// x, y in the working CRS and true height of the road at each point.
     pub points_m: Vec<[f64; 3]>,
     /// Whether its first and its last point are on the ground.
@@ -44,17 +40,16 @@ pub(crate) fn deck_lines(
 ) -> Vec<DeckLine> {
     let bridges = runs.iter().filter(|run| run.structure == Structure::Bridge);
     let deck = |run: &SpanRun| {
-        let (own_width, look) = tagged(payload, run.way_id);
         let points_m = run.points.iter().filter_map(|point| {
             let [x, y] = frame.position_m(point.at);
             // The reader has looked that there is such a triangle.
             Some([x, y, point.height_m(surface, quantum_m)?])
         });
-        let (way_id, class) = (run.way_id, run.class);
+        let kind = RoadKind::tagged(payload, run.way_id, run.class);
         let on_ground = [run.points.first(), run.points.last()].map(|point| {
             point.is_some_and(|point| matches!(point.height, SpanHeight::Ground { .. }))
         });
-        DeckLine { way_id, class, own_width, look, points_m: points_m.collect(), on_ground }
+        DeckLine { way_id: run.way_id, kind, points_m: points_m.collect(), on_ground }
     };
     bridges.map(deck).collect()
 }

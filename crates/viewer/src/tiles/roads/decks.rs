@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::{Bounds, Work};
-use corniche_roads::{FunctionalRoadClass, OwnWidth, slab_thickness_m};
+use corniche_roads::slab_thickness_m;
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
-    DeckLine, RoadEnd, RoadList, RoadLook,
+    DeckLine, RoadEnd, RoadKind, RoadList,
     dashes::{DashPlace, dash_starts},
     ends::Side,
     flat_ends::{LineEnds, direction},
@@ -29,7 +29,7 @@ const STEPS_OF_SIDE: f64 = 65536.0;
 const LEAST_COSINE: f64 = -0.5;
 
 /// A straight piece of a deck: a slab, with the road on it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DeckPiece {
     /// Metres from the tile's reference point: east, north, and up to the road, true.
     pub start_in_tile: [f32; 3],
@@ -46,12 +46,8 @@ pub struct DeckPiece {
     pub slab_m: f32,
     /// Working metres across it for each true metre across it.
     pub width_factor: f32,
-    /// Functional road class.
-    pub class: FunctionalRoadClass,
-    /// What the road's tags say of its width.
-    pub own_width: OwnWidth,
-    /// What it is.
-    pub look: RoadLook,
+    /// What its road is.
+    pub kind: RoadKind,
     /// How long the part of the network is that it belongs to, working metres.
     pub(crate) part_m: f32,
     /// Where dashes are, for its start.
@@ -59,8 +55,8 @@ pub struct DeckPiece {
 }
 
 impl Classed for DeckPiece {
-    fn class(&self) -> FunctionalRoadClass {
-        self.class
+    fn kind(&self) -> RoadKind {
+        self.kind
     }
 }
 
@@ -120,7 +116,7 @@ impl RoadList<DeckPiece> {
     /// The same pieces as ribbons, which end where their tile does.
     pub(crate) fn as_ribbons(&self) -> Self {
         let ribbon = |piece: &DeckPiece| DeckPiece { slab_m: 0.0, ..*piece };
-        Self::sorted(self.all().iter().map(ribbon).collect(), DeckPiece::class, Vec::new())
+        Self::sorted(self.all().iter().map(ribbon).collect(), Vec::new())
     }
 
     /// Cuts decks in the tile with these bounds into pieces; none when that is too much work, which the caller looks at in the end.
@@ -195,18 +191,16 @@ impl RoadList<DeckPiece> {
                             lands[1] && number + 1 == ways.len() && is_last && end.is_some(),
                         ],
                         deck_m,
-                        slab_m: slab_thickness_m(deck.class) as f32,
+                        slab_m: slab_thickness_m(deck.kind.class) as f32,
                         width_factor,
-                        class: deck.class,
-                        own_width: deck.own_width,
-                        look: deck.look,
+                        kind: deck.kind,
                         part_m: ground.parts_m.get(&deck.way_id).copied().unwrap_or(OPEN_M),
                         dash: dash.moved(first / count * length_m),
                     });
                 }
             }
         }
-        Self::sorted(pieces, |piece| piece.class, deck_ends(decks, tile, scale))
+        Self::sorted(pieces, deck_ends(decks, tile, scale))
     }
 }
 
@@ -226,9 +220,7 @@ fn deck_ends(decks: &[DeckLine], tile: Bounds, scale: &PlanScale) -> Vec<RoadEnd
             if let Some(side) = Side::of(plan(point), tile) {
                 ends.push(RoadEnd {
                     way_id: deck.way_id,
-                    class: deck.class,
-                    own_width: deck.own_width,
-                    look: deck.look,
+                    kind: deck.kind,
                     side,
                     at_m: plan(point),
                     height_range_m: [points_m[point][2]; 2],

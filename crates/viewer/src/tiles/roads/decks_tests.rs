@@ -2,6 +2,8 @@
 
 #![expect(clippy::float_cmp, reason = "these numbers are exact")]
 
+use corniche_roads::FunctionalRoadClass;
+
 use super::*;
 
 const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 1000.0, max_y: 1000.0 };
@@ -9,9 +11,7 @@ const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 1000.0, max_y: 1000
 fn deck(way_id: i64, number: u8, points_m: &[[f64; 3]]) -> DeckLine {
     DeckLine {
         way_id,
-        class: FunctionalRoadClass::new(number).unwrap(),
-        own_width: OwnWidth::Unknown,
-        look: RoadLook::Plain,
+        kind: RoadKind::plain(FunctionalRoadClass::new(number).unwrap()),
         points_m: points_m.to_vec(),
         on_ground: [false; 2],
     }
@@ -57,8 +57,7 @@ fn pieces_meet_half_way_at_bends() {
 fn decks_end_flat_at_the_border_and_where_a_road_goes_on() {
     let points = [[0.0, 100.0, 20.0], [150.0, 100.0, 20.0]];
     let road = LineEnds::of_road(
-        FunctionalRoadClass::new(3).unwrap(),
-        RoadLook::Plain,
+        RoadKind::plain(FunctionalRoadClass::new(3).unwrap()),
         [Some([[200.0, 100.0], [150.0, 100.0]]), None],
     );
     let net = |ends: Vec<LineEnds>| GroundNet { ends, parts_m: BTreeMap::from([(1, 77.0)]) };

@@ -1,10 +1,9 @@
 //! Where roads meet the border of their tile.
 
 use corniche_geom::Bounds;
-use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use serde::{Deserialize, Serialize};
 
-use super::{super::PlanScale, GroundLine, PlanLine, RoadLook};
+use super::{super::PlanScale, GroundLine, PlanLine, RoadKind};
 
 /// A side of a tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,12 +19,8 @@ pub(crate) enum Side {
 pub(crate) struct RoadEnd {
     /// OSM's id of the way.
     pub(crate) way_id: i64,
-    /// Functional road class.
-    pub(crate) class: FunctionalRoadClass,
-    /// What the road's tags say of its width.
-    pub(crate) own_width: OwnWidth,
-    /// What it is.
-    pub(crate) look: RoadLook,
+    /// What the road is.
+    pub(crate) kind: RoadKind,
     /// The side of the tile.
     pub(crate) side: Side,
     /// The position, in the working CRS.
@@ -90,9 +85,7 @@ pub(crate) fn ground_ends<'a>(
             if let Some(side) = Side::of([x, y], tile) {
                 ends.push(RoadEnd {
                     way_id: line.way_id,
-                    class: line.class,
-                    own_width: line.own_width,
-                    look: line.look,
+                    kind: line.kind,
                     side,
                     at_m: [x, y],
                     height_range_m: [height_m; 2],
@@ -116,9 +109,7 @@ pub(crate) fn plan_ends<'a>(
             for (side, at_m) in crossings([pair[0], pair[1]], tile) {
                 ends.push(RoadEnd {
                     way_id: line.way_id,
-                    class: line.class,
-                    own_width: line.own_width,
-                    look: line.look,
+                    kind: line.kind,
                     side,
                     at_m,
                     height_range_m: *height_range_m,

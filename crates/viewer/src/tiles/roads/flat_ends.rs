@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use corniche_geom::Bounds;
 use corniche_roads::FunctionalRoadClass;
 
-use super::RoadLook;
+use super::{RoadKind, RoadLook};
 
 /// A road goes on in a line that turns no more than 30° from it.
 const LEAST_COSINE: f64 = 0.866;
@@ -27,8 +27,7 @@ pub(crate) struct LineEnds {
 impl LineEnds {
     /// The ends of a road on the ground.
     pub(crate) fn of_road(
-        class: FunctionalRoadClass,
-        look: RoadLook,
+        RoadKind { class, look, .. }: RoadKind,
         [first, last]: [Option<[[f64; 2]; 2]>; 2],
     ) -> Self {
         let layer = match look {

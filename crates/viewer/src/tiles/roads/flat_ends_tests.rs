@@ -9,7 +9,8 @@ fn line((class, look, points_m): &(u8, RoadLook, Vec<[f64; 2]>)) -> LineEnds {
     let end = |a: Option<&[f64; 2]>, b: Option<&[f64; 2]>| Some([*a?, *b?]);
     let first = end(points_m.get(1), points_m.first());
     let last = end(points_m.iter().rev().nth(1), points_m.last());
-    LineEnds::of_road(FunctionalRoadClass::new(*class).unwrap(), *look, [first, last])
+    let class = FunctionalRoadClass::new(*class).unwrap();
+    LineEnds::of_road(RoadKind { look: *look, ..RoadKind::plain(class) }, [first, last])
 }
 
 fn check(lines: &[(u8, RoadLook, Vec<[f64; 2]>)], expected: &[[bool; 2]]) {

@@ -28,7 +28,7 @@ impl Bed {
 }
 
 /// Heights of the ground no farther from a segment than [`NearHeights::reach_m`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct NearHeights {
     /// Lowest and highest ground beneath, true metres above the reference point, rounded outwards.
     pub(crate) range_in_tile: [f32; 2],

@@ -2,11 +2,11 @@
 
 use corniche_drape::BadLine;
 use corniche_geom::{GridFrame, TooMuchWork};
-use corniche_roads::{FunctionalRoadClass, OwnWidth, Structure};
+use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{SpanHeight, SpanPoint, SpanRun, TilePayload};
 use corniche_tin::Surface;
 
-use super::{super::PlanScale, DashPlace, DeckLine, RoadLook, deck_line::deck_lines, look::tagged};
+use super::{super::PlanScale, DashPlace, DeckLine, RoadKind, deck_line::deck_lines};
 use crate::options::Mapping;
 
 /// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.
@@ -14,12 +14,8 @@ use crate::options::Mapping;
 pub struct GroundLine {
     /// OSM's id of the way.
     pub way_id: i64,
-    /// Functional road class.
-    pub class: FunctionalRoadClass,
-    /// What its tags say of its width.
-    pub own_width: OwnWidth,
     /// What it is.
-    pub look: RoadLook,
+    pub kind: RoadKind,
     /// x, y in the working CRS and true height of each vertex.
     pub points_m: Vec<[f64; 3]>,
     /// Both ends in plan of the segment of the source line that each piece between two vertices is a piece of.
@@ -35,15 +31,7 @@ impl GroundLine {
     pub fn of_source(way_id: i64, class: FunctionalRoadClass, points_m: Vec<[f64; 3]>) -> Self {
         let plan = |[x, y, _]: [f64; 3]| [x, y];
         let sources_m = points_m.windows(2).map(|pair| [plan(pair[0]), plan(pair[1])]).collect();
-        Self {
-            way_id,
-            class,
-            own_width: OwnWidth::Unknown,
-            look: RoadLook::Plain,
-            points_m,
-            sources_m,
-            dashes: None,
-        }
+        Self { way_id, kind: RoadKind::plain(class), points_m, sources_m, dashes: None }
     }
 }
 
@@ -52,12 +40,8 @@ impl GroundLine {
 pub struct PlanLine {
     /// OSM's id of the way.
     pub way_id: i64,
-    /// Functional road class.
-    pub class: FunctionalRoadClass,
-    /// What its tags say of its width.
-    pub own_width: OwnWidth,
     /// What it is.
-    pub look: RoadLook,
+    pub kind: RoadKind,
     /// x, y in the working CRS.
     pub points_m: Vec<[f64; 2]>,
     /// The lowest and highest true height of the tile's ground within the width margin of each segment.
@@ -138,9 +122,9 @@ impl TileLines {
 
     /// The same with bores for tunnels.
     fn with_bores(mut self) -> Self {
-        let ground = self.ground.iter_mut().map(|line| &mut line.look);
-        for look in ground.chain(self.plan.iter_mut().map(|line| &mut line.look)) {
-            *look = look.with_portals();
+        let ground = self.ground.iter_mut().map(|line| &mut line.kind);
+        for kind in ground.chain(self.plan.iter_mut().map(|line| &mut line.kind)) {
+            kind.look = kind.look.with_portals();
         }
         self
     }
@@ -179,12 +163,9 @@ fn ground_lines(
     for road in &payload.roads_geo {
         let positions = corniche_drape::positions(&road.line, surface)
             .map_err(|source| BadRoad { way_id: road.way_id, part: road.part, source })?;
-        let (own_width, look) = tagged(payload, road.way_id);
         lines.push(GroundLine {
             way_id: road.way_id,
-            class: road.class,
-            own_width,
-            look,
+            kind: RoadKind::tagged(payload, road.way_id, road.class),
             points_m: positions.into_iter().map(place).collect(),
             sources_m: corniche_drape::source_segments(&road.line)
                 .into_iter()
@@ -197,17 +178,12 @@ fn ground_lines(
 }
 
 fn plan_lines(payload: &TilePayload, frame: &GridFrame) -> Vec<PlanLine> {
-    let place = |road: &corniche_tileset::SvRoad| {
-        let (own_width, look) = tagged(payload, road.way_id);
-        PlanLine {
-            way_id: road.way_id,
-            class: road.class,
-            own_width,
-            look,
-            points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
-            ground_range_m: road.line.ground_range_m.clone(),
-            dashes: None,
-        }
+    let place = |road: &corniche_tileset::SvRoad| PlanLine {
+        way_id: road.way_id,
+        kind: RoadKind::tagged(payload, road.way_id, road.class),
+        points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
+        ground_range_m: road.line.ground_range_m.clone(),
+        dashes: None,
     };
     payload.roads_sv.iter().map(place).collect()
 }

@@ -7,12 +7,12 @@ use corniche_roads::FunctionalRoadClass;
 
 use super::{
     super::blocks::{Recorded, records},
-    RoadEnd,
+    RoadEnd, RoadKind,
 };
 
-/// What has a functional road class, or the place of one.
+/// What is a piece of a road, or of a line that is drawn as one.
 pub(crate) trait Classed {
-    fn class(&self) -> FunctionalRoadClass;
+    fn kind(&self) -> RoadKind;
 }
 
 /// All pieces of the roads of a tile, as one method draws them, in order of class.
@@ -27,12 +27,12 @@ pub struct RoadList<T> {
 
 impl<T> RoadList<T> {
     /// Sorts pieces by class.
-    pub(crate) fn sorted(
-        mut pieces: Vec<T>,
-        class_of: impl Fn(&T) -> FunctionalRoadClass,
-        ends: Vec<RoadEnd>,
-    ) -> Self {
-        pieces.sort_by_key(&class_of);
+    pub(crate) fn sorted(mut pieces: Vec<T>, ends: Vec<RoadEnd>) -> Self
+    where
+        T: Classed,
+    {
+        let class_of = |piece: &T| piece.kind().class;
+        pieces.sort_by_key(class_of);
         let mut ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
         for (class, range) in FunctionalRoadClass::all().zip(&mut ranges) {
             let start = pieces.partition_point(|piece| class_of(piece) < class);
@@ -49,7 +49,7 @@ impl<T> RoadList<T> {
     {
         let pieces = lists.clone().flat_map(|list| list.pieces.iter().cloned()).collect();
         let ends = lists.flat_map(|list| list.ends.iter().copied()).collect();
-        Self::sorted(pieces, T::class, ends)
+        Self::sorted(pieces, ends)
     }
 
     /// The pieces, most important class first.
@@ -63,10 +63,13 @@ impl<T> RoadList<T> {
         self.ranges[usize::from(class.number())].clone()
     }
 
-    /// The pieces of a class.
-    pub(crate) fn of_class(&self, class: FunctionalRoadClass) -> &[T] {
+    /// What the roads of a class are.
+    pub(crate) fn kinds_of(&self, class: FunctionalRoadClass) -> impl Iterator<Item = RoadKind>
+    where
+        T: Classed,
+    {
         let range = self.range_of(class);
-        &self.pieces[range.start as usize..range.end as usize]
+        self.pieces[range.start as usize..range.end as usize].iter().map(T::kind)
     }
 
     /// Where the roads meet the tile's border.

@@ -1,10 +1,45 @@
 //! Kinds of roads that are drawn differently within their class: slip roads, tunnels, service roads and carriageways.
 
-use corniche_roads::{Form, OwnWidth, RoadAttributes, Structure};
+use corniche_roads::{Form, FunctionalRoadClass, OwnWidth, RoadAttributes, Structure};
 use corniche_tileset::TilePayload;
 use serde::{Deserialize, Serialize};
 
-/// What a road is, as far as it changes how it is drawn.
+/// What a road is: which road of which class, and how wide.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RoadKind {
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+    /// What the road's tags say of its width.
+    pub own_width: OwnWidth,
+    /// What changes how it is drawn within its class.
+    pub look: RoadLook,
+}
+
+impl Default for RoadKind {
+    fn default() -> Self {
+        Self::plain(FunctionalRoadClass::LEAST)
+    }
+}
+
+impl RoadKind {
+    /// A road of which no more is known than its class.
+    #[must_use]
+    pub fn plain(class: FunctionalRoadClass) -> Self {
+        Self { class, own_width: OwnWidth::Unknown, look: RoadLook::Plain }
+    }
+
+    /// The kind of a way of a tile; that of its class alone if the attributes were not read.
+    pub(crate) fn tagged(payload: &TilePayload, way_id: i64, class: FunctionalRoadClass) -> Self {
+        let found = payload.attributes.binary_search_by_key(&way_id, |record| record.way_id);
+        found.map_or(Self::plain(class), |at| {
+            let attributes = &payload.attributes[at].attributes;
+            let (own_width, look) = (attributes.own_width(), RoadLook::of(attributes));
+            Self { class, own_width, look }
+        })
+    }
+}
+
+/// What a road is, as far as it changes how it is drawn. The numbers in shaders are the constants of these names in `shaders/common.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum RoadLook {
     /// The road looks as its class does.
@@ -14,11 +49,11 @@ pub enum RoadLook {
     Link,
     /// A road under the ground: pale, with a dashed edge, and hidden by every road that is not.
     Tunnel,
-    /// The same in a package that tells where tunnels are under the ground: half as wide, with a tick at each portal.
-    Bore,
     /// A service road: driveways, parking aisles, ways to yards and barns. Narrower, of one colour, shown one zoom step later than
     /// the rest of its class, and hidden by every other road on the ground.
     Service,
+    /// The same as [`RoadLook::Tunnel`] in a package that tells where tunnels are under the ground: half as wide, with a tick at each portal.
+    Bore,
     /// One of the two carriageways of a road, as wide as the style says.
     Carriageway,
     /// The same as [`RoadLook::Tunnel`].
@@ -64,45 +99,17 @@ impl RoadLook {
         self.is_bore() || matches!(self, Self::Tunnel | Self::CarriagewayTunnel)
     }
 
-    /// All of them.
-    const ALL: [Self; 8] = [
+    /// All of them, in the order of their numbers in shaders, which are `look as u32`.
+    pub(crate) const ALL: [Self; 8] = [
         Self::Plain,
         Self::Link,
         Self::Tunnel,
-        Self::Bore,
         Self::Service,
+        Self::Bore,
         Self::Carriageway,
         Self::CarriagewayTunnel,
         Self::CarriagewayBore,
     ];
-
-    /// Its number in shaders: the constants of these names in `shaders/common.wgsl`.
-    pub(crate) fn number(self) -> u32 {
-        match self {
-            Self::Plain => 0,
-            Self::Link => 1,
-            Self::Tunnel => 2,
-            Self::Service => 3,
-            Self::Bore => 4,
-            Self::Carriageway => 5,
-            Self::CarriagewayTunnel => 6,
-            Self::CarriagewayBore => 7,
-        }
-    }
-
-    /// The look of a number.
-    pub(crate) fn of_number(number: u32) -> Option<Self> {
-        Self::ALL.into_iter().find(|look| look.number() == number)
-    }
-}
-
-/// What the tags of a way say of its width and of what it is; nothing if the attributes were not read.
-pub(crate) fn tagged(payload: &TilePayload, way_id: i64) -> (OwnWidth, RoadLook) {
-    let found = payload.attributes.binary_search_by_key(&way_id, |record| record.way_id);
-    let record = found.ok().and_then(|at| payload.attributes.get(at));
-    record
-        .map(|record| (record.attributes.own_width(), RoadLook::of(&record.attributes)))
-        .unwrap_or_default()
 }
 
 #[cfg(test)]

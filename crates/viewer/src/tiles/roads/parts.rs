@@ -3,9 +3,8 @@
 use std::{borrow::Cow, collections::BTreeMap};
 
 use corniche_geom::Bounds;
-use corniche_roads::FunctionalRoadClass;
 
-use super::{super::shares_in, NearHeights, RoadLook};
+use super::{super::shares_in, NearHeights, RoadKind, RoadLook};
 
 /// The length of a part of which not all is known, working metres; larger than any other.
 pub(crate) const OPEN_M: f32 = 1e15;
@@ -17,8 +16,7 @@ const MOST_SQUARES: usize = 1 << 22;
 /// A line of the road network.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct NetLine {
-    pub(crate) class: FunctionalRoadClass,
-    pub(crate) look: RoadLook,
+    pub(crate) kind: RoadKind,
     /// Its vertices in plan.
     pub(crate) vertices_m: Vec<[f64; 2]>,
 }
@@ -73,7 +71,7 @@ pub(crate) fn part_lengths_m(lines: &[NetLine], known: KnownNet) -> Vec<f32> {
 
 /// Lines of a lower rank are shown from farther away.
 fn rank(line: &NetLine) -> (u8, bool) {
-    (line.class.number(), line.look == RoadLook::Service)
+    (line.kind.class.number(), line.kind.look == RoadLook::Service)
 }
 
 impl KnownNet {

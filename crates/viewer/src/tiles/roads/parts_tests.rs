@@ -1,5 +1,7 @@
 //! Parts of the road network are found by class, and no crossing is missed.
 
+use corniche_roads::FunctionalRoadClass;
+
 use super::*;
 
 const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 1000.0, max_y: 1000.0 };
@@ -10,8 +12,7 @@ fn lengths(lines: &[(u8, &[[f64; 2]])]) -> Vec<Option<f32>> {
     let lines: Vec<NetLine> = lines
         .iter()
         .map(|(class, points)| NetLine {
-            class: FunctionalRoadClass::new(*class).unwrap(),
-            look: RoadLook::Plain,
+            kind: RoadKind::plain(FunctionalRoadClass::new(*class).unwrap()),
             vertices_m: points.to_vec(),
         })
         .collect();
@@ -82,8 +83,7 @@ fn parts_that_meet_the_border_are_open() {
 fn service_roads_come_after_the_rest_of_their_class() {
     let class = FunctionalRoadClass::new(6).unwrap();
     let line = |look, from: f64, to: f64| NetLine {
-        class,
-        look,
+        kind: RoadKind { look, ..RoadKind::plain(class) },
         vertices_m: vec![[from, 500.0], [to, 500.0]],
     };
     let lines = [line(RoadLook::Service, 100.0, 200.0), line(RoadLook::Plain, 200.0, 250.0)];

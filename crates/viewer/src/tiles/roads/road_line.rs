@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use super::{
-    RoadLook,
+    RoadKind,
     cut::OffGround,
     decks::GroundNet,
     flat_ends::{LineEnds, flat_ends},
@@ -16,7 +16,7 @@ pub(crate) trait RoadLine: Clone {
     /// OSM's id of the way.
     fn way_id(&self) -> i64;
     /// What it is.
-    fn look(&self) -> RoadLook;
+    fn kind(&self) -> RoadKind;
     /// It as a line of the network.
     fn in_net(&self) -> NetLine;
     /// Its ends, where it was not cut within the tile.
@@ -34,7 +34,7 @@ impl<'a, L: RoadLine> InNet<'a, L> {
         margin_m: f64,
     ) -> (Vec<Self>, GroundNet) {
         let net: Vec<NetLine> = lines.iter().map(L::in_net).collect();
-        let known = KnownNet { margin_m, ..KnownNet::within(decks.tile()) };
+        let known = KnownNet { margin_m, ..KnownNet::within(decks.tile) };
         let lines = lines.iter().zip(part_lengths_m(&net, known));
         let parts_m = lines.clone().map(|(line, part_m)| (line.way_id(), part_m)).collect();
         let on_ground: Vec<Self> = lines
@@ -54,10 +54,10 @@ impl<'a, L: RoadLine> InNet<'a, L> {
     ) -> Vec<(&'l L, f32, [bool; 2])> {
         let ends: Vec<LineEnds> =
             lines.iter().map(|in_net| in_net.line.ends()).chain(decks.ends()).collect();
-        let flat = flat_ends(&ends, decks.tile()).into_iter().zip(&ends);
+        let flat = flat_ends(&ends, decks.tile).into_iter().zip(&ends);
         let with_flat = lines.iter().zip(flat).map(|(InNet { line, part_m }, (flat, ends))| {
             // A bore ends flat where it comes out of the ground, and its tick is there.
-            let flat = if line.look().is_bore() { decks.portals(ends) } else { flat };
+            let flat = if line.kind().look.is_bore() { decks.portals(ends) } else { flat };
             (line.as_ref(), *part_m, flat)
         });
         with_flat.collect()

@@ -2,11 +2,9 @@
 
 use std::borrow::Cow;
 
-use corniche_roads::{FunctionalRoadClass, OwnWidth};
-
 use super::{
     super::{PlanScale, ground_mesh::relative},
-    Bed, GroundLine, RoadList, RoadLook,
+    Bed, GroundLine, RoadKind, RoadList,
     cut::OffGround,
     dashes::{DashPlace, dash_starts},
     ends::ground_ends,
@@ -17,7 +15,7 @@ use super::{
 };
 
 /// A straight piece of a road's centre-line on the ground.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RoadSegment {
     /// The segment of the source line that it is a piece of: its start, metres east and north of the tile's reference
     /// point.
@@ -34,12 +32,8 @@ pub struct RoadSegment {
     pub width_factor: f32,
     /// The ground beside it.
     pub bed: Bed,
-    /// Functional road class.
-    pub class: FunctionalRoadClass,
-    /// What the road's tags say of its width.
-    pub own_width: OwnWidth,
-    /// What it is.
-    pub look: RoadLook,
+    /// What its road is.
+    pub kind: RoadKind,
     /// How long the part of the network is that it belongs to, working metres.
     pub(crate) part_m: f32,
     /// Where dashes are, for the start of its source segment.
@@ -49,8 +43,8 @@ pub struct RoadSegment {
 }
 
 impl Classed for RoadSegment {
-    fn class(&self) -> FunctionalRoadClass {
-        self.class
+    fn kind(&self) -> RoadKind {
+        self.kind
     }
 }
 
@@ -122,12 +116,12 @@ impl RoadLine for GroundLine {
         self.way_id
     }
 
-    fn look(&self) -> RoadLook {
-        self.look
+    fn kind(&self) -> RoadKind {
+        self.kind
     }
 
     fn in_net(&self) -> NetLine {
-        NetLine { class: self.class, look: self.look, vertices_m: source_vertices(self) }
+        NetLine { kind: self.kind, vertices_m: source_vertices(self) }
     }
 
     /// Where it was not cut at the border or beside a void.
@@ -139,7 +133,7 @@ impl RoadLine for GroundLine {
         let last = self.sources_m.last().zip(self.points_m.last());
         let first = first.filter(|([a, _], point)| is_at(**point, *a)).map(|([a, b], _)| [*b, *a]);
         let last = last.filter(|([_, b], point)| is_at(**point, *b)).map(|(source, _)| *source);
-        LineEnds::of_road(self.class, self.look, [first, last])
+        LineEnds::of_road(self.kind, [first, last])
     }
 
     fn off_decks(&self, decks: &OffGround<'_>) -> Vec<Cow<'_, Self>> {
@@ -162,7 +156,7 @@ impl RoadList<RoadSegment> {
             [x, y]
         };
         let (place, bed) = (&place, &bed);
-        let tile = decks.tile();
+        let tile = decks.tile;
         let flat = InNet::with_flat_ends(lines, decks).into_iter();
         let segments = flat.flat_map(|(line, part_m, [first_flat, last_flat])| {
             let sources = source_vertices(line);
@@ -181,9 +175,7 @@ impl RoadList<RoadSegment> {
                     has_caps: piece.has_caps,
                     width_factor: scale.across(piece.source_m) as f32,
                     bed: bed(&piece),
-                    class: line.class,
-                    own_width: line.own_width,
-                    look: line.look,
+                    kind: line.kind,
                     part_m,
                     dash: dashes[piece.source_number],
                     flat_ends: [
@@ -194,6 +186,6 @@ impl RoadList<RoadSegment> {
             })
         });
         let lines = lines.iter().map(|in_net| in_net.line.as_ref());
-        Self::sorted(segments.collect(), |segment| segment.class, ground_ends(lines, tile, scale))
+        Self::sorted(segments.collect(), ground_ends(lines, tile, scale))
     }
 }

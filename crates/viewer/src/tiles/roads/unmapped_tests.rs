@@ -33,7 +33,7 @@ fn a_road_over_a_hill_is_one_straight_line() {
     assert_eq!(hill.points_m.len(), 5);
     let line = DeckLine::unmapped(&hill);
     assert_eq!(line.points_m, ends);
-    assert_eq!((line.way_id, line.class, line.on_ground), (7, class(), [false; 2]));
+    assert_eq!((line.way_id, line.kind.class, line.on_ground), (7, class(), [false; 2]));
 }
 
 /// A road that turns back goes the same way in plan twice.

@@ -2,11 +2,9 @@
 
 use std::borrow::Cow;
 
-use corniche_roads::{FunctionalRoadClass, OwnWidth};
-
 use super::{
     super::{PlanScale, ground_mesh::relative},
-    NearHeights, PlanLine, RoadList, RoadLook,
+    NearHeights, PlanLine, RoadKind, RoadList,
     cut::OffGround,
     dashes::{DashPlace, dash_starts},
     ends::plan_ends,
@@ -17,7 +15,7 @@ use super::{
 };
 
 /// A straight piece of a road in plan with the heights that its volume spans.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RoadVolume {
     /// Metres from the tile's reference point, east and north.
     pub start_in_tile: [f32; 2],
@@ -29,12 +27,8 @@ pub struct RoadVolume {
     pub(crate) near: NearHeights,
     /// Working metres across it for each true metre across it.
     pub width_factor: f32,
-    /// Functional road class.
-    pub class: FunctionalRoadClass,
-    /// What the road's tags say of its width.
-    pub own_width: OwnWidth,
-    /// What it is.
-    pub look: RoadLook,
+    /// What its road is.
+    pub kind: RoadKind,
     /// How long the part of the network is that it belongs to, working metres.
     pub(crate) part_m: f32,
     /// Where dashes are, for its start.
@@ -44,8 +38,8 @@ pub struct RoadVolume {
 }
 
 impl Classed for RoadVolume {
-    fn class(&self) -> FunctionalRoadClass {
-        self.class
+    fn kind(&self) -> RoadKind {
+        self.kind
     }
 }
 
@@ -57,12 +51,12 @@ impl RoadLine for PlanLine {
         self.way_id
     }
 
-    fn look(&self) -> RoadLook {
-        self.look
+    fn kind(&self) -> RoadKind {
+        self.kind
     }
 
     fn in_net(&self) -> NetLine {
-        NetLine { class: self.class, look: self.look, vertices_m: self.points_m.clone() }
+        NetLine { kind: self.kind, vertices_m: self.points_m.clone() }
     }
 
     /// Where it was cut, at the margin, that is outside the tile.
@@ -71,7 +65,7 @@ impl RoadLine for PlanLine {
             |ends: Option<&[[f64; 2]]>| ends.and_then(|ends| Some([*ends.first()?, *ends.get(1)?]));
         let first = pair(self.points_m.get(..2)).map(|[a, b]| [b, a]);
         let last = pair(self.points_m.get(self.points_m.len().saturating_sub(2)..));
-        LineEnds::of_road(self.class, self.look, [first, last])
+        LineEnds::of_road(self.kind, [first, last])
     }
 
     fn off_decks(&self, decks: &OffGround<'_>) -> Vec<Cow<'_, Self>> {
@@ -99,7 +93,7 @@ impl RoadList<RoadVolume> {
             let [x, y, _] = relative([x, y, 0.0], reference_m);
             [x, y]
         };
-        let tile = decks.tile();
+        let tile = decks.tile;
         let (place, near) = (&place, &near);
         let flat = InNet::with_flat_ends(lines, decks).into_iter();
         let volumes = flat.flat_map(|(line, part_m, [first_flat, last_flat])| {
@@ -122,9 +116,7 @@ impl RoadList<RoadVolume> {
                         rise: (rise as f32).next_up(),
                     },
                     width_factor: scale.across([pair[0], pair[1]]) as f32,
-                    class: line.class,
-                    own_width: line.own_width,
-                    look: line.look,
+                    kind: line.kind,
                     part_m,
                     dash,
                     flat_ends: [number == 0 && first_flat, number == last && last_flat],
@@ -132,6 +124,6 @@ impl RoadList<RoadVolume> {
             })
         });
         let lines = lines.iter().map(|in_net| in_net.line.as_ref());
-        Self::sorted(volumes.collect(), |volume| volume.class, plan_ends(lines, tile, scale))
+        Self::sorted(volumes.collect(), plan_ends(lines, tile, scale))
     }
 }

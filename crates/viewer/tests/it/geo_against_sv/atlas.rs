@@ -12,7 +12,7 @@ use corniche_viewer::{
     for_tests::{Owner, is_tunnel, settle},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     lod::Quality,
-    tiles::{PackageSource, TileStore},
+    tiles::{LoadTileError, PackageSource, TileStore},
 };
 use glam::DVec3;
 
@@ -84,7 +84,7 @@ impl<'a> Atlas<'a> {
         let [x, y] = view.place.at_m;
         let target = DVec3::new(x, y, store.ground_height_m([x, y]).unwrap()?);
         let camera = Camera::look_at(target, view.distance_m, view.orientation, SIZE);
-        let eye = camera.eye_in_world();
+        let eye = camera.eye_in_world;
         let ground_m = store.ground_height_m([eye.x, eye.y]).unwrap();
         ground_m.is_none_or(|ground_m| eye.z >= ground_m + clearance_m(1.0)).then_some(camera)
     }
@@ -96,7 +96,8 @@ impl<'a> Atlas<'a> {
 
     /// A drawing with these options against SV with round caps.
     pub(crate) fn compare_with(&mut self, camera: &Camera, options: RoadOptions) -> Seen {
-        let drawn = settle(&mut self.store, camera, QUALITY, &|| false).unwrap();
+        let drawn =
+            settle(&mut self.store, camera, QUALITY, || Ok::<_, LoadTileError>(())).unwrap();
         for drawn in &drawn {
             let upload = || TileBuffers::new(self.gpu, self.store.get(drawn.id).unwrap(), None);
             self.buffers.entry(drawn.id).or_insert_with(upload);

@@ -24,8 +24,8 @@ fn nothing_of_a_road_shows_from_behind_a_ridge() {
             .filter(|(_, at)| at.y % 2.0 < 1.0 && at.x % 8.0 < 1.0)
             .filter(|(_, at)| {
                 let ray = from_south.ray_in_world(*at);
-                cast(from_south.eye_in_world(), ray, &mesh).is_some_and(|depth_m| {
-                    let ground = from_south.eye_in_world() + ray * depth_m;
+                cast(from_south.eye_in_world, ray, &mesh).is_some_and(|depth_m| {
+                    let ground = from_south.eye_in_world + ray * depth_m;
                     plan_distance_m(ground.truncate(), &tile.2) <= 15.0
                 })
             });
@@ -51,8 +51,8 @@ fn a_road_over_a_ridge_ends_at_its_crest() {
         // At the silhouette one pixel is allowed, because the ray of the pixel's centre may pass over the crest.
         let on_road = [0.0, 0.5, 1.0].iter().any(|down_px| {
             let ray = camera.ray_in_world(at + DVec2::new(0.0, *down_px));
-            cast(camera.eye_in_world(), ray, &mesh).is_some_and(|depth_m| {
-                let ground = camera.eye_in_world() + ray * depth_m;
+            cast(camera.eye_in_world, ray, &mesh).is_some_and(|depth_m| {
+                let ground = camera.eye_in_world + ray * depth_m;
                 plan_distance_m(ground.truncate(), &tile.2) <= 20.5
             })
         });

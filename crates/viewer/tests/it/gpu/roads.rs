@@ -1,16 +1,14 @@
 //! Roads on flat and evenly sloping ground: place, width, order and centre lines.
 
 use corniche_geom::TileId;
-use corniche_viewer::{
-    camera::{Camera, Orientation},
-    for_tests::road_label,
-};
+use corniche_viewer::camera::{Camera, Orientation};
 use glam::DVec2;
 
 use super::{
     SIZE, camera, center, compare, hidden_centerline_points, scene,
     support::{bands, draw, frame, gpu, ground_line, lay, plain_style, terrain, triangles},
 };
+use crate::labels::road_label;
 
 #[test]
 fn a_road_is_where_the_camera_says() {

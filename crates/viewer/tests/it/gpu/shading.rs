@@ -4,7 +4,7 @@ use corniche_geom::{HeightGrid, TileId};
 use corniche_styles::Style;
 use corniche_tileset::{Relief, TilePayload};
 use corniche_viewer::{
-    FrameView, Mapping, RoadMethod, RoadOptions, Wireframe,
+    FrameView, Mapping, RoadMethod, RoadOptions,
     for_tests::PlanScale,
     gpu::{DrawTile, Gpu, Renderer, SlopeChain, Targets, TileBuffers},
     tiles::TileGeometry,
@@ -108,7 +108,7 @@ fn draw_beneath(
     let tiles: Vec<DrawTile<'_>> =
         buffers.iter().map(|buffers| DrawTile { buffers, skirt_depth_m: 0.0 }).collect();
     let camera = camera(400.0 * look.exaggeration, look.distance_m, 0.0, 0.0);
-    let targets = Targets::new(gpu, camera.size_px(), 1).unwrap();
+    let targets = Targets::new(gpu, camera.size_px, 1).unwrap();
     let view = FrameView {
         camera: &camera,
         style: &style,
@@ -119,7 +119,7 @@ fn draw_beneath(
         wall_m: 0.0,
         cell_px: look.cell_px,
         latitude_deg: 47.0,
-        wireframe: Wireframe::Hidden,
+        is_wireframe: false,
     };
     Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);
     Drawing::read(gpu, &targets)

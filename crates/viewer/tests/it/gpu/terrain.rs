@@ -76,7 +76,7 @@ fn terrain_is_where_rays_meet_its_triangles() {
             }
             checked += 1;
             let ray = camera.ray_in_world(at);
-            let Some(truth_m) = cast(camera.eye_in_world(), ray, &stretched) else {
+            let Some(truth_m) = cast(camera.eye_in_world, ray, &stretched) else {
                 missing += usize::from(drawing.depth[index] != 0.0);
                 continue;
             };
@@ -84,7 +84,7 @@ fn terrain_is_where_rays_meet_its_triangles() {
                 missing += 1;
                 continue;
             }
-            let drawn_m = camera.near_m() / f64::from(drawing.depth[index]);
+            let drawn_m = camera.near_m / f64::from(drawing.depth[index]);
             let off_m = (drawn_m - truth_m).abs();
             wrong += usize::from(off_m > 0.5 * camera.pixel_at_unit_depth_m() * truth_m / 0.1);
             worst_px = worst_px.max(off_m / (camera.pixel_at_unit_depth_m() * truth_m));

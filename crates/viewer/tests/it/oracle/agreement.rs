@@ -8,7 +8,7 @@ use corniche_viewer::{
     camera::{Camera, Orientation},
     for_tests::{class_of, may_be_clamped, settle},
     lod::Quality,
-    tiles::TileStore,
+    tiles::{LoadTileError, TileStore},
 };
 use glam::{DVec2, DVec3};
 
@@ -202,7 +202,7 @@ pub(crate) fn country_scene(
 ) -> Scene {
     let mut store = TileStore::new(country);
     let quality = Quality::by_error(error_px, 1.0);
-    let drawn = settle(&mut store, camera, quality, &|| false).unwrap();
+    let drawn = settle(&mut store, camera, quality, || Ok::<_, LoadTileError>(())).unwrap();
     let tiles = drawn
         .iter()
         .map(|drawn| {

@@ -121,7 +121,7 @@ fn compare(scene: &Scene, areas: &[PlanArea], camera: &Camera, drawing: &Drawing
         found.painted += usize::from(drawn.is_some());
         let depth_m = camera.depth_m(f64::from(drawing.depth[index]));
         let ground = camera.ray_start_in_world(pixel) + camera.ray_in_world(pixel) * depth_m;
-        let far_m = ground.distance(camera.eye_in_world());
+        let far_m = ground.distance(camera.eye_in_world);
         // The depth is an f32, and so are places relative to the eye. At a pixel's width of a thousandth of the distance, this is a
         // hundredth of a pixel.
         let band_m = 1e-5 * far_m + 0.005;
@@ -236,7 +236,7 @@ fn eye_at(
 ) -> Camera {
     let eye = (center() + DVec2::new(x, y)).extend(height_m);
     let orientation = Orientation { heading_deg, pitch_deg };
-    let backward = Camera::look_at(eye, 1.0, orientation, SIZE).world_from_view().z_axis;
+    let backward = Camera::look_at(eye, 1.0, orientation, SIZE).world_from_view.z_axis;
     Camera::look_at(eye - backward * focus_m, focus_m, orientation, SIZE)
 }
 

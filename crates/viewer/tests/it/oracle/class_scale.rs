@@ -4,7 +4,6 @@ use corniche_styles::{RoadBands, RoadStyle, Style, WidthScaling};
 use corniche_viewer::{
     RoadOptions,
     camera::Camera,
-    for_tests::{road_label, service_label, tunnel_label},
     gpu::{DrawTile, TileBuffers},
     tiles::RoadLook,
 };
@@ -18,6 +17,7 @@ use super::{
         scenes::{Named, Road, camera, hills, junction, one_tile, style},
     },
 };
+use crate::labels::{road_label, service_label, tunnel_label};
 
 /// How much ground a pixel covers at a distance.
 fn pixel_m(camera: &Camera, distance_m: f64) -> f32 {
@@ -69,6 +69,12 @@ fn other_scales_and_caps_fail() {
     }
 }
 
+/// Share of a class's colour where a pixel shows `pixel_m` true metres: 1 up to its scale, 0 half a zoom step later, and between them linear in
+/// the zoom.
+fn shown_share(max_pixel_m: f32, pixel_m: f64) -> f64 {
+    (1.0 - 2.0 * (pixel_m / f64::from(max_pixel_m)).log2()).clamp(0.0, 1.0)
+}
+
 /// On flat ground seen from straight above, the colour of a road's middle is the ground's and the road's by the share that
 /// the style gives, opacity included.
 #[test]
@@ -80,7 +86,6 @@ fn the_colour_of_a_fading_class_follows_its_closed_form() {
     let scale_m = 3.0_f32;
     style.roads[5].max_pixel_m = Some(scale_m);
     style.roads[5].opacity = 0.8;
-    let road_style = style.roads[5];
     let scene = one_tile(256, |_, _| 0.0, &[road], style);
     for method in METHODS {
         for zoom_steps in [-0.5, 0.0, 0.1, 0.25, 0.4, 0.49, 0.6_f64] {
@@ -91,10 +96,10 @@ fn the_colour_of_a_fading_class_follows_its_closed_form() {
             let [drawn, bare] =
                 [RoadOptions::of(method), RoadOptions::of(corniche_viewer::RoadMethod::None)]
                     .map(draw);
-            let middle = (view.size_px()[1] / 2 * view.size_px()[0] + view.size_px()[0] / 2) * 4;
+            let middle = (view.size_px[1] / 2 * view.size_px[0] + view.size_px[0] / 2) * 4;
             let [drawn, bare] = [drawn, bare].map(|rgba| f64::from(rgba[middle as usize + 1]));
             let share = 1.0 - drawn / bare;
-            let expected = 0.8 * road_style.shown_share(f64::from(scale_m) * zoom_steps.exp2());
+            let expected = 0.8 * shown_share(scale_m, f64::from(scale_m) * zoom_steps.exp2());
             assert!((share - expected).abs() < 0.01, "{zoom_steps}: {share} for {expected}");
         }
     }

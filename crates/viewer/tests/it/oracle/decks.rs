@@ -7,8 +7,8 @@ use corniche_testing::some_of;
 use corniche_viewer::{
     RoadOptions,
     camera::Camera,
-    for_tests::{class_of, road_label},
-    tiles::{DeckLine, RoadLook},
+    for_tests::class_of,
+    tiles::{DeckLine, RoadKind, RoadLook},
 };
 use glam::{DVec2, DVec3};
 
@@ -21,6 +21,7 @@ use super::{
         scenes::{self, camera, center, style},
     },
 };
+use crate::labels::road_label;
 
 pub(crate) const SIDE: u8 = 1;
 pub(crate) const UNDERSIDE: u8 = 2;
@@ -45,9 +46,7 @@ fn deck(way_id: i64, (number, points): &Deck) -> DeckLine {
     let middle = center();
     DeckLine {
         way_id,
-        class: class(*number),
-        own_width: OwnWidth::Unknown,
-        look: look_of(*number),
+        kind: RoadKind { look: look_of(*number), ..RoadKind::plain(class(*number)) },
         points_m: points.iter().map(|[x, y, z]| [middle.x + x, middle.y + y, *z]).collect(),
         on_ground: [false; 2],
     }

@@ -1,17 +1,14 @@
 //! O2: the label of each pixel from rays at the triangles that were drawn.
 
 use corniche_testing::some_of;
-use corniche_viewer::{
-    RoadOptions,
-    camera::Camera,
-    for_tests::{Owner, road_label},
-};
+use corniche_viewer::{RoadOptions, camera::Camera, for_tests::Owner};
 use glam::{DVec2, DVec3};
 
 use super::{
     reference::{Look, Tri, distance, half_width, near_end, part_share, shows, without_caps},
     support::{Drawing, cast, scene::Scene},
 };
+use crate::labels::road_label;
 
 /// Side of a bin of the picture that lists the triangles it may show.
 const BIN_PX: usize = 16;
@@ -35,7 +32,7 @@ pub(crate) struct Hit {
 
 impl<'a> Caster<'a> {
     pub(crate) fn new(scene: &Scene, camera: &'a Camera) -> Self {
-        let [width, height] = camera.size_px().map(|side| side as usize);
+        let [width, height] = camera.size_px.map(|side| side as usize);
         let (columns, rows) = (width.div_ceil(BIN_PX), height.div_ceil(BIN_PX));
         let mut caster = Self { camera, columns, rows, bins: vec![Vec::new(); columns * rows] };
         for (tile, triangles) in scene.tiles.iter().map(|tile| &tile.triangles).enumerate() {

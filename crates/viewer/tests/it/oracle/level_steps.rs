@@ -32,7 +32,7 @@ fn steps(scene: &Scene) -> Vec<Line> {
                 [line.points_m.first(), line.points_m.last()].into_iter().flatten().map(
                     move |point| {
                         let at = DVec3::from_array(*point);
-                        (tile.geometry.id.z(), line.way_id, at, line.class.number())
+                        (tile.geometry.id.z(), line.way_id, at, line.kind.class.number())
                     },
                 )
             })

@@ -46,7 +46,7 @@ pub(crate) fn center_lines(scene: &Scene, camera: &Camera, drawing: &Drawing) ->
         .map(|(_, line)| line)
         .map(|line| {
             let points = line.points_m.iter().map(|point| DVec3::from_array(*point)).collect();
-            ((line.class.number(), line.own_width, line.look), points)
+            ((line.kind.class.number(), line.kind.own_width, line.kind.look), points)
         })
         .collect();
     walk(&lines, scene, &Caster::new(scene, camera), camera, drawing)
@@ -56,7 +56,7 @@ pub(crate) fn center_lines(scene: &Scene, camera: &Camera, drawing: &Drawing) ->
 fn goes_on(tile: &Tile, line: &GroundLine) -> bool {
     let at = DVec3::from_array(line.points_m[0]).truncate();
     let mut here = tile.segments_near(at).iter().filter(|segment| {
-        segment.class == line.class.number() && distance(at, segment.ends, [false; 2]) < 1e-3
+        segment.class == line.kind.class.number() && distance(at, segment.ends, [false; 2]) < 1e-3
     });
     here.all(|segment| segment.part_m[0].is_infinite())
 }
@@ -97,7 +97,7 @@ pub(crate) fn walk(
             if at.cmplt(DVec2::ZERO).any() || at.cmpge(size).any() {
                 continue;
             }
-            let depth_m = match camera.projection() {
+            let depth_m = match camera.projection {
                 // Depths along a line are linear in their reciprocals.
                 Projection::Perspective => 1.0 / ((1.0 - share) / from_m + share / to_m),
                 Projection::FromAbove { .. } => (1.0 - share) * from_m + share * to_m,

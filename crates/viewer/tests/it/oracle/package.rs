@@ -9,7 +9,7 @@ use corniche_viewer::{
     for_tests::settle,
     gpu::Gpu,
     lod::Quality,
-    tiles::{PackageSource, TileStore},
+    tiles::{LoadTileError, PackageSource, TileStore},
 };
 use glam::{DVec2, DVec3};
 
@@ -32,7 +32,7 @@ fn scene_of(
 ) -> Scene {
     let mut store = TileStore::new(source);
     let quality = Quality::by_error(error_px, 1.0);
-    let drawn = settle(&mut store, camera, quality, &|| false).unwrap();
+    let drawn = settle(&mut store, camera, quality, || Ok::<_, LoadTileError>(())).unwrap();
     let tiles = drawn
         .iter()
         .map(|drawn| Tile::of_package(package, drawn.id, drawn.skirt_depth_m))

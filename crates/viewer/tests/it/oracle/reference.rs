@@ -5,7 +5,7 @@ use corniche_styles::{OwnWidths, RoadStyle, Style};
 use corniche_viewer::{
     Caps, RoadOptions, WidthGrowth,
     camera::{Camera, Projection},
-    for_tests::{Owner, road_label, service_label, tunnel_label},
+    for_tests::Owner,
     tiles::RoadLook,
 };
 use glam::{DMat2, DVec2, DVec3};
@@ -14,6 +14,7 @@ use super::support::{
     Drawing,
     scene::{PlanSegment, Scene, Tile},
 };
+use crate::labels::{road_label, service_label, tunnel_label};
 
 /// Ground may be painted so many least half widths away in plan, at most.
 const MAX_STRETCH: f64 = 8.0;
@@ -182,7 +183,7 @@ impl PixelOracle<'_> {
     ) -> Tri {
         let widest_m = tile.geometry.width_margin_m;
         let (ground, depth_m) = self.ground(index).expect("the owner says there is ground");
-        let from_eye = ground - self.camera.eye_in_world();
+        let from_eye = ground - self.camera.eye_in_world;
         let distance_m = self.camera.seeing_distance_m(ground);
         let pixel_m = self.camera.pixel_at_depth_m(depth_m);
         // A step of a pixel on the screen moves the plan position by at least this much.
@@ -197,7 +198,7 @@ impl PixelOracle<'_> {
         let plan_m = distance(ground.truncate(), ends, without_cap);
         let (half_m, least_px) = half_width(look, (class, own, kind), factor, distance_m);
         let wide = Tri::at_most(plan_m, share * half_m, band_m);
-        let slant = match self.camera.projection() {
+        let slant = match self.camera.projection {
             Projection::Perspective => from_eye.length() / from_eye.z.abs(),
             Projection::FromAbove { .. } => 1.0,
         };

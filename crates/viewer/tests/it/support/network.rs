@@ -37,7 +37,7 @@ fn pairs(lines: &[PlanLine]) -> impl Iterator<Item = (usize, usize)> {
 /// For each line the length of its part, if these lines lie beside each line: for each rank anew, through all lines that are shown as
 /// early.
 fn lengths_m(lines: &[PlanLine], known_m: &[f64], beside: &[Vec<usize>]) -> Vec<f64> {
-    let rank = |line: &PlanLine| (line.class.number(), line.look == RoadLook::Service);
+    let rank = |line: &PlanLine| (line.kind.class.number(), line.kind.look == RoadLook::Service);
     let ranks: BTreeSet<(u8, bool)> = lines.iter().map(rank).collect();
     let mut lengths_m = vec![0.0; lines.len()];
     for most in ranks {

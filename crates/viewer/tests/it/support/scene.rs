@@ -8,11 +8,11 @@ use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Sections, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 use corniche_viewer::{
-    FrameView, Mapping, RoadOptions, Wireframe,
+    FrameView, Mapping, RoadOptions,
     camera::Camera,
     for_tests::{GroundLine, PlanLine, PlanScale},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
-    tiles::{DeckLine, RoadLook, TileGeometry, TileLines},
+    tiles::{DeckLine, RoadKind, RoadLook, TileGeometry, TileLines},
 };
 use glam::{DVec2, DVec3};
 
@@ -102,9 +102,7 @@ impl Tile {
                         None => lines.plan.push(PlanLine {
                             dashes: None,
                             way_id: *way_id,
-                            class,
-                            own_width: OwnWidth::Unknown,
-                            look: RoadLook::Plain,
+                            kind: RoadKind::plain(class),
                             points_m: vec![a.to_array(), b.to_array()],
                             ground_range_m: vec![range_m],
                         }),
@@ -164,9 +162,11 @@ impl Tile {
             .map(|road| GroundLine {
                 dashes: None,
                 way_id: road.way_id,
-                class: road.class,
-                own_width: own_width(payload, road.way_id),
-                look: look(payload, road.way_id),
+                kind: RoadKind {
+                    class: road.class,
+                    own_width: own_width(payload, road.way_id),
+                    look: look(payload, road.way_id),
+                },
                 points_m: corniche_drape::positions(&road.line, &surface)
                     .unwrap()
                     .into_iter()
@@ -187,9 +187,11 @@ impl Tile {
             .map(|road| PlanLine {
                 dashes: None,
                 way_id: road.way_id,
-                class: road.class,
-                own_width: own_width(payload, road.way_id),
-                look: look(payload, road.way_id),
+                kind: RoadKind {
+                    class: road.class,
+                    own_width: own_width(payload, road.way_id),
+                    look: look(payload, road.way_id),
+                },
                 points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
                 ground_range_m: road.line.ground_range_m.clone(),
             })
@@ -221,16 +223,16 @@ impl Tile {
     /// The same tile with widths of their own for its ways; its GEO and SV lines alike.
     pub(crate) fn with_own_widths(&self, of_way: impl Fn(i64) -> OwnWidth) -> Self {
         let mut lines = self.lines.clone();
-        lines.ground.iter_mut().for_each(|line| line.own_width = of_way(line.way_id));
-        lines.plan.iter_mut().for_each(|line| line.own_width = of_way(line.way_id));
+        lines.ground.iter_mut().for_each(|line| line.kind.own_width = of_way(line.way_id));
+        lines.plan.iter_mut().for_each(|line| line.kind.own_width = of_way(line.way_id));
         self.with_lines(lines)
     }
 
     /// The same tile with its ways being what is said; its GEO and SV lines alike.
     pub(crate) fn with_looks(&self, of_way: impl Fn(i64) -> RoadLook) -> Self {
         let mut lines = self.lines.clone();
-        lines.ground.iter_mut().for_each(|line| line.look = of_way(line.way_id));
-        lines.plan.iter_mut().for_each(|line| line.look = of_way(line.way_id));
+        lines.ground.iter_mut().for_each(|line| line.kind.look = of_way(line.way_id));
+        lines.plan.iter_mut().for_each(|line| line.kind.look = of_way(line.way_id));
         self.with_lines(lines)
     }
 
@@ -274,11 +276,11 @@ impl Tile {
                             && is_flat(&lines.plan, line, End::Last, frame.tile_bounds(id)),
                     ],
                     part_m: *part_m,
-                    class: line.class.number(),
+                    class: line.kind.class.number(),
                     ends: [pair[0], pair[1]].map(DVec2::from_array),
                     factor: lines.scale.across([pair[0], pair[1]]),
-                    own: line.own_width,
-                    look: line.look,
+                    own: line.kind.own_width,
+                    look: line.kind.look,
                 })
             })
             .collect();
@@ -323,7 +325,7 @@ impl Scene {
             wall_m: 0.0,
             cell_px: f64::INFINITY,
             latitude_deg: 47.0,
-            wireframe: Wireframe::Hidden,
+            is_wireframe: false,
         }
     }
 
@@ -345,7 +347,7 @@ impl Scene {
             .zip(&self.tiles)
             .map(|(buffers, tile)| DrawTile { buffers, skirt_depth_m: tile.skirt_depth_m })
             .collect();
-        let targets = Targets::new(gpu, view.camera.size_px(), samples_per_side).unwrap();
+        let targets = Targets::new(gpu, view.camera.size_px, samples_per_side).unwrap();
         Renderer::new(gpu).draw(gpu, view, &tiles, &targets);
         targets
     }
@@ -387,17 +389,17 @@ fn end_of(line: &PlanLine, end: End) -> (DVec2, DVec2) {
 fn is_flat(lines: &[PlanLine], line: &PlanLine, end: End, tile: Bounds) -> bool {
     let above = |line: &PlanLine| {
         let layer = ["Tunnel", "Service", "Ground"].len()
-            - match line.look {
+            - match line.kind.look {
                 RoadLook::Plain | RoadLook::Link | RoadLook::Carriageway => 1,
                 RoadLook::Service => 2,
                 _ => 3,
             };
-        let narrow = match line.look {
+        let narrow = match line.kind.look {
             RoadLook::Link => 0,
             RoadLook::Carriageway | RoadLook::CarriagewayTunnel => 1,
             _ => 2,
         };
-        (layer, 9 - line.class.number(), narrow)
+        (layer, 9 - line.kind.class.number(), narrow)
     };
     let (at, outward) = end_of(line, end);
     let inside = at.x > tile.min_x && at.x < tile.max_x && at.y > tile.min_y && at.y < tile.max_y;
