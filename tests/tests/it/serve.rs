@@ -12,7 +12,7 @@ use std::{
 };
 
 use e2e::{
-    Ran, build_pass, copy_pass, corniche, ended, names, send_signal, skip, text,
+    Ran, build_pass, copy_pass, corniche, ended, names, send_signal, text,
     web_servers::{WebServer, direct},
 };
 use tempfile::TempDir;

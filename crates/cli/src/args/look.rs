@@ -172,14 +172,8 @@ fn parse_strength(text: &str) -> Result<f32, String> {
 impl LookArgs {
     /// A style, with photos as strong as `--photo` says, and with areas unless `--areas` says otherwise, and with the lines of `--overlay`.
     pub(crate) fn styled(&self, style: Style) -> Style {
-        let style = match self.areas {
-            true => style,
-            false => style.without_areas(),
-        };
-        let style = match self.boundaries {
-            true => style,
-            false => style.without_boundaries(),
-        };
+        let style = if self.areas { style } else { style.without_areas() };
+        let style = if self.boundaries { style } else { style.without_boundaries() };
         let style = Style { photo: self.photo.unwrap_or(style.photo), ..style };
         overlay::styled(&self.overlay, style)
     }

@@ -10,7 +10,6 @@ use super::record::AreaRecord;
 use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS, MAX_TEXT_BYTES};
 use crate::payload::builder::Section;
 use crate::payload::damage::{DecodeError, EncodeError};
-use crate::payload::envelope;
 use crate::payload::number_codes::put_planes;
 use crate::payload::range_coder::Writer;
 use crate::payload::section_kind::{AREAS, Kind};
