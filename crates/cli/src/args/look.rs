@@ -1,6 +1,6 @@
 //! How roads are drawn and how everything looks, for all commands that draw.
 
-use clap::{Args, builder::TypedValueParser};
+use clap::{ArgAction, Args, builder::TypedValueParser};
 use corniche_presets::{Words, one_of};
 use corniche_styles::Style;
 use corniche_viewer::{
@@ -131,10 +131,10 @@ pub(crate) struct LookArgs {
     #[arg(long, value_name = "off|SHARE", value_parser = parse_strength)]
     pub(crate) photo: Option<f32>,
     /// Areas (water, forest …), where the package has some: as the style draws them, or off
-    #[arg(long, value_parser = one_of(ON_OFF), default_value = "on")]
+    #[arg(long, value_parser = one_of(ON_OFF), default_value = "on", action = ArgAction::Set)]
     pub(crate) areas: bool,
     /// Boundaries, where the package has some: as the style draws them, or off
-    #[arg(long, value_parser = one_of(ON_OFF), default_value = "on")]
+    #[arg(long, value_parser = one_of(ON_OFF), default_value = "on", action = ArgAction::Set)]
     pub(crate) boundaries: bool,
     /// Draw the lines of a file over the map: GeoJSON, GPX, GeoPackage, Shapefile …; give it again for another file
     ///

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgAction, Args};
 use corniche_presets::{Words, one_of};
 
 use super::{
@@ -39,7 +39,7 @@ pub(crate) struct ViewArgs {
     #[command(flatten)]
     pub(crate) gpu: GpuArgs,
     /// How movements end
-    #[arg(long, value_parser = one_of(MOTIONS), default_value = "soft")]
+    #[arg(long, value_parser = one_of(MOTIONS), default_value = "soft", action = ArgAction::Set)]
     pub(crate) motion: bool,
     /// Lines to change with the mouse (key L): a GeoJSON file, made if it is not there. They are saved there with Ctrl S and at the end
     /// [default: a new file in --folder]
