@@ -8,7 +8,7 @@ use corniche_geom::TileId;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TileCosts {
     max_level: u8,
-    /// Of all tiles with a cost, and of those above them.
+    /// Costs of all tiles that have one, and of those above them.
     by_tile: BTreeMap<TileId, Cost>,
 }
 
