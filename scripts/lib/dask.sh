@@ -1,4 +1,4 @@
-# Sourced by scripts/test-dask, scripts/torture and .ci/run: a virtual environment with corniche-dask; what the examples for clusters need.
+# Sourced by scripts/test-dask and scripts/torture: a virtual environment with corniche-dask; what the examples for clusters need.
 # shellcheck shell=bash
 
 # Sets `dask_env` to a virtual environment with corniche-dask and pytest, or fails as python_package does.

@@ -43,20 +43,23 @@ pub fn page_sources(root: &Path) -> Result<String> {
         let folder = root.join(name);
         for file in files_in(&folder)? {
             let inside = file.strip_prefix(&folder)?;
-            let is_other = |part: &std::ffi::OsStr| NOT_SOURCES.iter().any(|name| part == *name);
+            let is_other = NOT_SOURCES.iter().any(|name| inside.starts_with(name));
             let is_text = inside.extension().is_some_and(|ending| ending == "md");
-            if !is_text && !is_test_file(inside) && !inside.iter().any(is_other) {
+            if !is_text && !is_test_file(inside) && !is_other {
                 let bytes =
                     fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
                 add(&format!("{name}/{}", inside.display()), &bytes);
             }
         }
     }
-    for name in &used.others {
+    for name in &used.names {
         add(name, known[name].to_string().as_bytes());
     }
-    add("profile", workspace["profile"]["wasm"].to_string().as_bytes());
-    add("versions", locked_versions(root, &used.others)?.as_bytes());
+    // Of a browser's modules; they take over what they do not set of those of a release.
+    for profile in ["release", "wasm"] {
+        add(profile, workspace["profile"][profile].to_string().as_bytes());
+    }
+    add("versions", locked_versions(root, &used.names)?.as_bytes());
     add(SCRIPT, &fs::read(root.join(SCRIPT)).with_context(|| format!("cannot read {SCRIPT}"))?);
     Ok(hash.finalize().iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
@@ -69,8 +72,8 @@ pub fn page_sources(root: &Path) -> Result<String> {
 struct UsedCrates {
     /// Folders of the workspace.
     own: BTreeSet<String>,
-    /// Names in `workspace.dependencies`.
-    others: BTreeSet<String>,
+    /// Names in `workspace.dependencies`, of the workspace's own crates and of others.
+    names: BTreeSet<String>,
 }
 
 fn used_crates(root: &Path, known: &Value) -> Result<UsedCrates> {
@@ -80,13 +83,15 @@ fn used_crates(root: &Path, known: &Value) -> Result<UsedCrates> {
         let manifest = read_toml(&root.join(&folder).join("Cargo.toml"))?;
         found.own.insert(folder);
         for name in dependencies(&manifest) {
-            match known[&name].get("path").and_then(Value::as_str) {
-                Some(folder) if !found.own.contains(folder) => open.push(folder.to_owned()),
-                Some(_) => {}
-                None => {
-                    found.others.insert(name);
-                }
+            let dependency = known.get(&name).with_context(|| {
+                format!("{name} is none of the workspace's dependencies in Cargo.toml")
+            })?;
+            if let Some(folder) = dependency.get("path").and_then(Value::as_str)
+                && !found.own.contains(folder)
+            {
+                open.push(folder.to_owned());
             }
+            found.names.insert(name);
         }
     }
     Ok(found)
@@ -112,7 +117,9 @@ fn locked_versions(root: &Path, names: &BTreeSet<String>) -> Result<String> {
         let name = package["name"].as_str().context("a package without a name")?;
         by_name.entry(name).or_default().push(package);
     }
-    let mut open: Vec<&str> = names.iter().map(String::as_str).collect();
+    // What own crates need is among the names; the lock file also lists what their tests need.
+    let is_other = |name: &&str| !name.starts_with("corniche-");
+    let mut open: Vec<&str> = names.iter().map(String::as_str).filter(is_other).collect();
     let mut found = BTreeSet::new();
     while let Some(name) = open.pop() {
         for package in by_name.get(name).into_iter().flatten() {

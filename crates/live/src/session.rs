@@ -59,7 +59,7 @@ pub struct SessionStart {
     pub size_px: [u32; 2],
     /// Pixels to a point of the screen.
     pub pixels_per_point: f32,
-    /// How movements end.
+    /// Whether movements slow down smoothly, or end at once.
     pub has_inertia: bool,
 }
 

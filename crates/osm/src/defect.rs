@@ -245,7 +245,19 @@ impl Defect {
             | Self::SelfCrossing { crossings: count, .. }
             | Self::MissingWays { ways: count, .. }
             | Self::MendedOutline { segments: count, .. } => Some(count),
-            _ => None,
+            Self::UnknownHighway { .. }
+            | Self::TagTakenOtherwise { .. }
+            | Self::Area { .. }
+            | Self::DuplicateWay { .. }
+            | Self::DamagedText { .. }
+            | Self::LongText { .. }
+            | Self::NoLine { .. }
+            | Self::ToAndFro { .. }
+            | Self::ConflictingWay { .. }
+            | Self::ConflictingNode { .. }
+            | Self::OpenCoastline { .. }
+            | Self::LostLine { .. }
+            | Self::LostArea { .. } => None,
         }
     }
 

@@ -159,6 +159,7 @@ impl<'a> Replay<'a> {
         self.renderer.draw_timed(self.gpu, &view, &tiles, &self.targets, self.timer.as_mut());
         self.gpu.finish()?;
         let draw_ms = ms_since(started);
+        let passes = self.timer.as_mut().map(|timer| timer.read(self.gpu)).transpose()?;
         self.next += 1;
         Ok(Some(FrameRecord {
             frame,
@@ -176,7 +177,7 @@ impl<'a> Replay<'a> {
             decode_ms: prepared.decode_ms,
             upload_ms: prepared.upload_ms,
             draw_ms,
-            passes: self.timer.as_mut().map(|timer| timer.read(self.gpu)).transpose()?,
+            passes,
         }))
     }
 

@@ -21,9 +21,11 @@ impl<const LISTS: usize> ReportFiles<LISTS> {
         inputs: &[&'a Path],
         existing: Existing,
     ) -> Result<Self, Failure> {
-        for (option, list) in lists {
-            if svg.is_some() && svg == list {
-                let reason = format!("--svg and {option} name one file; give each its own");
+        let named = [("--svg", svg)].into_iter().chain(lists);
+        for (number, (option, place)) in named.clone().enumerate() {
+            let mut before = named.clone().take(number);
+            if let Some((other, _)) = before.find(|&(_, other)| place.is_some() && place == other) {
+                let reason = format!("{other} and {option} name one file; give each its own");
                 return Err(Failure::unusable(reason));
             }
         }

@@ -90,8 +90,9 @@ pub(crate) fn make(
                 .into());
             }
             tiles.add(id, &record);
-            if let Some((_, own)) = spans_of_tile(context, id)? {
-                tiles.add_spans(id.z(), own);
+            if let Some((section, parts, points)) = spans_of_tile(context, id)? {
+                let bytes = section.size(id)?.stored;
+                tiles.add_spans(id.z(), SectionOfTile { parts, points, bytes });
             }
             fold.add(&record.fates)?;
         }
@@ -186,7 +187,7 @@ fn write(
         let id = artifacts::tile_of(key)?;
         let mut payload =
             context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?;
-        if let Some((spans, _)) = spans_of_tile(context, id)? {
+        if let Some((spans, ..)) = spans_of_tile(context, id)? {
             let mut builder = PayloadBuilder::with_all_of(&payload, id)?;
             builder.add(spans)?;
             payload = builder.seal()?.bytes;
@@ -265,12 +266,7 @@ fn tin_of(context: &Context<'_>, id: TileId) -> Result<Option<Tin>, ExtractError
 pub(crate) fn spans_of_tile(
     context: &Context<'_>,
     id: TileId,
-) -> Result<Option<(Section, SectionOfTile)>, BuildError> {
+) -> Result<Option<(Section, u64, u64)>, BuildError> {
     let kept = TileSection::get(SectionLayer::Spans, context.store, id)?;
-    let spans_of_tile = kept.map(|TileSection { section, parts, points }| {
-        let section = SectionLayer::Spans.section_of(section);
-        let bytes = section.size(id)?.stored;
-        Ok((section, SectionOfTile { parts, points, bytes }))
-    });
-    spans_of_tile.transpose()
+    Ok(kept.map(|kept| (SectionLayer::Spans.section_of(kept.section), kept.parts, kept.points)))
 }

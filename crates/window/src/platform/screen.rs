@@ -19,6 +19,8 @@ pub(crate) struct Screen {
     instance: Instance,
     /// Colours are painted as sRGB already; the surface does not convert them.
     pub(crate) configuration: SurfaceConfiguration,
+    /// Width and height of what is painted; 0 on some systems while the window is minimised. No side is larger than the device's largest
+    /// texture. A window across several screens may be larger; the system then enlarges the picture.
     pub(crate) size_px: [u32; 2],
     /// Whether the surface can be used: asking an unconfigured one for a texture would end the program.
     is_configured: bool,
