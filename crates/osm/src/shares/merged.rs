@@ -1,10 +1,6 @@
 //! Records of several shares as one list.
 
-use std::{
-    cmp::{Ordering, Reverse},
-    collections::BinaryHeap,
-    io,
-};
+use std::{cmp::Reverse, collections::BinaryHeap, io};
 
 use super::blocks::{BlockReader, BlockRecord};
 
@@ -21,7 +17,10 @@ pub(crate) trait HasId {
 /// The records of all shares in ascending order of id; those with the same id by age, then in the order of the shares, which is that of the file.
 pub(crate) struct Merged<'a, T: BlockRecord> {
     readers: Vec<BlockReader<'a, T>>,
-    heads: BinaryHeap<Reverse<Head<T>>>,
+    /// The next record of each share.
+    heads: Vec<Option<T>>,
+    /// Id and age of each of them, and its share.
+    places: BinaryHeap<Reverse<(i64, u32, usize)>>,
     /// What went wrong while the record after the last one handed out was read.
     failed: Option<io::Error>,
 }
@@ -29,8 +28,9 @@ pub(crate) struct Merged<'a, T: BlockRecord> {
 impl<'a, T: BlockRecord + HasId> Merged<'a, T> {
     /// Merges the records of one reader for each share, in the order of the shares.
     pub(crate) fn new(readers: Vec<BlockReader<'a, T>>) -> Self {
-        let mut merged =
-            Self { heads: BinaryHeap::with_capacity(readers.len()), readers, failed: None };
+        let heads = readers.iter().map(|_| None).collect();
+        let places = BinaryHeap::with_capacity(readers.len());
+        let mut merged = Self { readers, heads, places, failed: None };
         (0..merged.readers.len()).for_each(|share| merged.refill(share));
         merged
     }
@@ -39,8 +39,8 @@ impl<'a, T: BlockRecord + HasId> Merged<'a, T> {
     fn refill(&mut self, share: usize) {
         match self.readers[share].next() {
             Some(Ok(record)) => {
-                let place = (record.id(), record.age(), share);
-                self.heads.push(Reverse(Head { place, record }));
+                self.places.push(Reverse((record.id(), record.age(), share)));
+                self.heads[share] = Some(record);
             }
             Some(Err(error)) => self.failed = Some(error),
             None => {}
@@ -53,38 +53,12 @@ impl<T: BlockRecord + HasId> Iterator for Merged<'_, T> {
 
     fn next(&mut self) -> Option<io::Result<T>> {
         if let Some(error) = self.failed.take() {
-            self.heads.clear();
+            self.places.clear();
             return Some(Err(error));
         }
-        let Reverse(Head { place: (_, _, share), record }) = self.heads.pop()?;
+        let Reverse((_, _, share)) = self.places.pop()?;
+        let record = self.heads[share].take()?;
         self.refill(share);
         Some(Ok(record))
-    }
-}
-
-/// The next record of a share.
-struct Head<T> {
-    /// Id, age and share.
-    place: (i64, u32, usize),
-    record: T,
-}
-
-impl<T> PartialEq for Head<T> {
-    fn eq(&self, other: &Self) -> bool {
-        self.place == other.place
-    }
-}
-
-impl<T> Eq for Head<T> {}
-
-impl<T> PartialOrd for Head<T> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<T> Ord for Head<T> {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.place.cmp(&other.place)
     }
 }
