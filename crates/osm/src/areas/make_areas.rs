@@ -6,7 +6,7 @@ use corniche_areas::{
     Area, AreaClass, AreaObject, Assembled, Coastline, OutlineError, OutlineWay, Polygon, assemble,
 };
 use corniche_geom::{LatticePoint, split_at_seam};
-use corniche_store::Sorted;
+use corniche_store::{Sorted, take_record};
 use rayon::prelude::*;
 
 use super::{over_seam, summary::AreaSummary};
@@ -46,7 +46,7 @@ pub(crate) fn make_areas(
         let mut batch = Vec::new();
         let mut points = 0;
         while batch.len() < threads * OBJECTS_PER_THREAD && points < threads * POINTS_PER_THREAD {
-            let next = known.next(Known::decode)?;
+            let next = known.next(take_record)?;
             let Some(known) = next else { break };
             let parts = parts_of(&mut all_parts, number)?;
             points +=

@@ -1,6 +1,7 @@
 //! Lines of a layer and what is wrong with them are handed out in order of their ways.
 
 use corniche_areas::ClassedLayer;
+use corniche_store::take_record;
 
 use super::{
     classed_line::ClassedLine,
@@ -32,7 +33,7 @@ pub(crate) fn hand_out_lines<'a>(
     check_held(reading, held_bytes + count)?;
     let mut classes = Vec::with_capacity(count as usize);
     let mut names = on_name.map(|on_name| LineNames { objects: Vec::new(), on_name });
-    while let Some(object) = known.next(Known::decode)? {
+    while let Some(object) = known.next(take_record::<Known>)? {
         classes.push(object.class.unwrap_or(NO_CLASS));
         if let Some(names) = &mut names {
             names.objects.push(object);

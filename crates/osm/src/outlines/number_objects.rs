@@ -1,7 +1,7 @@
 //! Numbers objects that ways outline.
 
 use corniche_areas::AreaObject;
-use corniche_store::Sorter;
+use corniche_store::{Sorter, append_record};
 
 use super::records::{MemberRecord, ObjectRecord};
 use crate::{
@@ -63,7 +63,7 @@ pub(crate) fn number_objects<'a>(
         }
         last = Some((object.object, object.origin.file, version));
         let (known, ways) = object.into_known();
-        numbered.known.push(|bytes| known.encode(bytes))?;
+        numbered.known.push(|bytes| append_record(bytes, known))?;
         for &member in &ways {
             let record = MemberRecord { member, object_number: numbered.count };
             numbered.members.push(record)?;

@@ -1,11 +1,10 @@
 //! What is kept in blocks, and how: ways and places that they give as they are sorted anyway, places of nodes as differences.
 
-use corniche_store::SortRecord;
+use corniche_store::{SortRecord, append_record, take_record};
 
 use super::{blocks::BlockRecord, merged::HasId};
 use crate::{
     Defect,
-    defect_bytes::{push_defect, take_defect},
     location::Location,
     records::{Located, WayRecord},
     wire::{push_varint, to_zigzag, varint, zigzag},
@@ -65,7 +64,8 @@ impl HasId for PlaceRecord {
     }
 }
 
-impl BlockRecord for WayRecord {
+/// What is sorted stands in blocks as it does in scratch space.
+impl<T: SortRecord> BlockRecord for T {
     type Before = ();
 
     fn write(&self, (): &mut (), bytes: &mut Vec<u8>) {
@@ -87,18 +87,6 @@ impl HasId for WayRecord {
     }
 }
 
-impl BlockRecord for Located {
-    type Before = ();
-
-    fn write(&self, (): &mut (), bytes: &mut Vec<u8>) {
-        self.encode(bytes);
-    }
-
-    fn take((): &mut (), bytes: &mut &[u8]) -> Option<Self> {
-        Self::decode(bytes)
-    }
-}
-
 impl HasId for Located {
     fn id(&self) -> i64 {
         self.node_id
@@ -109,11 +97,11 @@ impl BlockRecord for Defect {
     type Before = ();
 
     fn write(&self, (): &mut (), bytes: &mut Vec<u8>) {
-        push_defect(bytes, self);
+        append_record(bytes, self);
     }
 
     fn take((): &mut (), bytes: &mut &[u8]) -> Option<Self> {
-        take_defect(bytes)
+        take_record(bytes)
     }
 }
 
