@@ -16,7 +16,7 @@ use crate::{
     failed::Failed,
     layer_sink::LayerSink,
     looked::check_held,
-    outlines::records::{Known, OutlineWayRecord, degrees_of, to_point},
+    outlines::records::{ObjectRecord, OutlineWayRecord, degrees_of, to_point},
     read_request::Placing,
     reading::Reading,
     spool::SpoolReader,
@@ -109,7 +109,7 @@ struct Made {
     defects: Vec<Defect>,
 }
 
-fn make(known: Known, parts: &[OutlineWayRecord], placing: Placing<'_>) -> Made {
+fn make(known: ObjectRecord, parts: &[OutlineWayRecord], placing: Placing<'_>) -> Made {
     let (kind, id) = known.object.parts();
     let is_relation = kind == "relation";
     let mut defects = Vec::new();
@@ -152,12 +152,12 @@ fn coastlines(
 }
 
 fn try_making(
-    (known, class): (Known, AreaClass),
+    (known, class): (ObjectRecord, AreaClass),
     parts: &[OutlineWayRecord],
     placing: Placing<'_>,
     defects: &mut Vec<Defect>,
 ) -> Result<Area, AreaLoss> {
-    let Known { object, name, .. } = known;
+    let ObjectRecord { object, name, .. } = known;
     let (kind, id) = object.parts();
     let mut missing = 0;
     let mut ways: Vec<Line> = Vec::new();

@@ -33,15 +33,6 @@ pub(crate) struct Member {
     pub(crate) is_inner: bool,
 }
 
-/// What is taken on from an object to its area.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Known {
-    pub(crate) object: AreaObject,
-    pub(crate) class: Option<u8>,
-    pub(crate) is_coastline: bool,
-    pub(crate) name: Box<str>,
-}
-
 /// A way that an object needs. Objects are numbered in the order of their records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct MemberRecord {
@@ -102,14 +93,6 @@ pub(crate) fn to_point([lon, lat]: Location) -> LatticePoint {
 /// The place of a point of the lattice of 1e-7 degrees.
 pub(crate) fn degrees_of(point: LatticePoint) -> [f64; 2] {
     [point.u as f64 / 1e7, point.v as f64 / 1e7]
-}
-
-impl ObjectRecord {
-    /// Splits off what makes the area; what is left are the ways.
-    pub(crate) fn into_known(self) -> (Known, Box<[Member]>) {
-        let Self { object, class, is_coastline, name, ways, .. } = self;
-        (Known { object, class, is_coastline, name }, ways)
-    }
 }
 
 impl SerdeRecord for ObjectRecord {

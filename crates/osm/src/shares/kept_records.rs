@@ -2,11 +2,10 @@
 
 use corniche_store::{SortRecord, append_record, take_record};
 
-use super::{blocks::BlockRecord, merged::HasId};
+use super::blocks::BlockRecord;
 use crate::{
     Defect,
     location::Location,
-    records::{Located, WayRecord},
     wire::{push_varint, to_zigzag, varint, zigzag},
 };
 
@@ -58,12 +57,6 @@ impl BlockRecord for PlaceRecord {
     }
 }
 
-impl HasId for PlaceRecord {
-    fn id(&self) -> i64 {
-        self.node_id
-    }
-}
-
 /// What is sorted stands in blocks as it does in scratch space.
 impl<T: SortRecord> BlockRecord for T {
     type Before = ();
@@ -74,22 +67,6 @@ impl<T: SortRecord> BlockRecord for T {
 
     fn take((): &mut (), bytes: &mut &[u8]) -> Option<Self> {
         Self::decode(bytes)
-    }
-}
-
-impl HasId for WayRecord {
-    fn id(&self) -> i64 {
-        self.way_id
-    }
-
-    fn age(&self) -> u32 {
-        self.origin.age
-    }
-}
-
-impl HasId for Located {
-    fn id(&self) -> i64 {
-        self.node_id
     }
 }
 

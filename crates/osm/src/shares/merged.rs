@@ -4,19 +4,11 @@ use std::{cmp::Reverse, collections::BinaryHeap, io};
 
 use super::blocks::{BlockReader, BlockRecord};
 
-/// What is sorted by the id of a way or a node.
-pub(crate) trait HasId {
-    fn id(&self) -> i64;
-
-    /// How old the record's extract is: among records with the same id, the smaller ones come first.
-    fn age(&self) -> u32 {
-        0
-    }
-}
-
 /// The records of all shares in ascending order of id; those with the same id by age, then in the order of the shares, which is that of the file.
 pub(crate) struct Merged<'a, T: BlockRecord> {
     readers: Vec<BlockReader<'a, T>>,
+    /// The id of a record, and how old its extract is: among records with the same id, the smaller ones come first.
+    place: fn(&T) -> (i64, u32),
     /// The next record of each share.
     heads: Vec<Option<T>>,
     /// Id and age of each of them, and its share.
@@ -25,12 +17,12 @@ pub(crate) struct Merged<'a, T: BlockRecord> {
     failed: Option<io::Error>,
 }
 
-impl<'a, T: BlockRecord + HasId> Merged<'a, T> {
+impl<'a, T: BlockRecord> Merged<'a, T> {
     /// Merges the records of one reader for each share, in the order of the shares.
-    pub(crate) fn new(readers: Vec<BlockReader<'a, T>>) -> Self {
+    pub(crate) fn new(readers: Vec<BlockReader<'a, T>>, place: fn(&T) -> (i64, u32)) -> Self {
         let heads = readers.iter().map(|_| None).collect();
         let places = BinaryHeap::with_capacity(readers.len());
-        let mut merged = Self { readers, heads, places, failed: None };
+        let mut merged = Self { readers, place, heads, places, failed: None };
         (0..merged.readers.len()).for_each(|share| merged.refill(share));
         merged
     }
@@ -39,7 +31,8 @@ impl<'a, T: BlockRecord + HasId> Merged<'a, T> {
     fn refill(&mut self, share: usize) {
         match self.readers[share].next() {
             Some(Ok(record)) => {
-                self.places.push(Reverse((record.id(), record.age(), share)));
+                let (id, age) = (self.place)(&record);
+                self.places.push(Reverse((id, age, share)));
                 self.heads[share] = Some(record);
             }
             Some(Err(error)) => self.failed = Some(error),
@@ -48,7 +41,7 @@ impl<'a, T: BlockRecord + HasId> Merged<'a, T> {
     }
 }
 
-impl<T: BlockRecord + HasId> Iterator for Merged<'_, T> {
+impl<T: BlockRecord> Iterator for Merged<'_, T> {
     type Item = io::Result<T>;
 
     fn next(&mut self) -> Option<io::Result<T>> {
