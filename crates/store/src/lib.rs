@@ -48,7 +48,7 @@ pub use artifacts::{Artifacts, Key};
 pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 pub use error::StoreError;
 pub use ids::random_digits;
-pub use in_memory_store::{MemoryScratch, MemoryStore};
+pub use in_memory_store::MemoryStore;
 pub use local::{
     FORMAT_VERSION, Folder, LocalScratch, LocalStore, OwnPart, PARTS_NAME, PLAN_NAME, STORE_NAME,
     SYNC_INTERVAL, SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,
