@@ -6,7 +6,7 @@ use corniche_geom::LatticePoint;
 use corniche_osm::{Defect, ReadOsmError, ReadRequest};
 use corniche_presets::parse_frc_table;
 use corniche_roads::FrcTable;
-use corniche_store::MemoryScratch;
+use corniche_testing::MemoryScratch;
 use corniche_testing::pbf::{header, raw};
 
 use roads::{check_summary, is_loss_of_way, read_roads_from};

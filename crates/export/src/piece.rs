@@ -1,13 +1,10 @@
 //! What one tile holds of a way, and how it is sorted outside memory.
 
 use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
-use corniche_store::SortRecord;
+use corniche_store::{SortRecord, append_record, take_record};
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    plane::{along, vector},
-    sorted_pieces::{put, take},
-};
+use crate::plane::{along, vector};
 
 /// A vertex of a road on its tile's ground.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -113,11 +110,12 @@ impl SortRecord for Piece {
     fn encode(&self, bytes: &mut Vec<u8>) {
         let Piece { key, class, attributes, vertices, goes_on, heights } = self;
         let AttributeParts { codes, width_mm, texts } = attributes.parts();
-        put(&(key, class, codes, width_mm, texts, vertices, goes_on, heights), bytes);
+        let record = (key, class, codes, width_mm, texts, vertices, goes_on, heights);
+        append_record(bytes, record);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let (key, class, codes, width_mm, texts, vertices, goes_on, heights) = take(bytes)?;
+        let (key, class, codes, width_mm, texts, vertices, goes_on, heights) = take_record(bytes)?;
         let mut texts = <[String; 7]>::into_iter(texts);
         let attributes = RoadAttributes::from_parts(codes, width_mm, || texts.next())?;
         Some(Self { key, class, attributes, vertices, goes_on, heights })

@@ -3,7 +3,8 @@
 use std::num::{NonZeroU8, NonZeroU32};
 
 use corniche_roads::{Form, Oneway, Structure};
-use corniche_store::{MemoryScratch, Sorter};
+use corniche_store::Sorter;
+use corniche_testing::MemoryScratch;
 
 use super::*;
 

@@ -2,15 +2,13 @@
 
 use corniche_areas::AreaObject;
 use corniche_geom::LatticePoint;
-use corniche_store::SortRecord;
+use corniche_store::SerdeRecord;
+use serde::{Deserialize, Serialize};
 
-use crate::{
-    error::FeaturesError,
-    sorted_pieces::{put, take},
-};
+use crate::error::FeaturesError;
 
 /// What one tile holds of an object: rings of an area in any order, or a part of a line.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct PlanPiece {
     pub(crate) object: AreaObject,
     /// The tile's place in the package.
@@ -38,19 +36,7 @@ pub(crate) fn class_of<C>(
     class.ok_or(FeaturesError::Differs { object: first.object })
 }
 
-impl SortRecord for PlanPiece {
-    fn encode(&self, bytes: &mut Vec<u8>) {
-        let Self { object, tile, class, name, lines } = self;
-        let (_, id) = object.parts();
-        put(&(matches!(object, AreaObject::Way(_)), id, tile, class, name, lines), bytes);
-    }
-
-    fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let (is_way, id, tile, class, name, lines) = take(bytes)?;
-        let object = if is_way { AreaObject::Way(id) } else { AreaObject::Relation(id) };
-        Some(Self { object, tile, class, name, lines })
-    }
-
+impl SerdeRecord for PlanPiece {
     fn extra_bytes(&self) -> usize {
         let points: usize = self.lines.iter().map(Vec::capacity).sum();
         points * size_of::<LatticePoint>()

@@ -1,5 +1,7 @@
 //! A piece of an object in plan comes back from its bytes as it was.
 
+use corniche_store::SortRecord;
+
 use super::*;
 
 #[test]

@@ -10,7 +10,6 @@ use std::{
 use corniche_geom::TileId;
 use corniche_store::{Groups, Scratch, SortRecord, Sorter, Span};
 use corniche_work::{Observer, Stage, workers::one_by_one};
-use serde::{Serialize, de::DeserializeOwned};
 
 use crate::error::FeaturesError;
 
@@ -50,22 +49,6 @@ impl Scratch for FileScratch {
         file.read_exact(&mut bytes)?;
         Ok(bytes)
     }
-}
-
-/// Appends what a record holds, for its way through scratch space.
-pub(crate) fn put(record: &impl Serialize, bytes: &mut Vec<u8>) {
-    let config = bincode::config::standard();
-    // Writing to a list cannot fail.
-    let written = bincode::serde::encode_into_std_write(record, bytes, config);
-    debug_assert!(written.is_ok());
-}
-
-/// Takes from the front of `bytes` what [`put`] appended; `None` where they hold nothing of the kind.
-pub(crate) fn take<T: DeserializeOwned>(bytes: &mut &[u8]) -> Option<T> {
-    let config = bincode::config::standard();
-    let (record, used) = bincode::serde::decode_from_slice(bytes, config).ok()?;
-    *bytes = &bytes[used..];
-    Some(record)
 }
 
 /// The pieces of one object after the other: of a way, or of an area.

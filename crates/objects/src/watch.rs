@@ -8,14 +8,11 @@
 
 use std::{
     collections::BTreeMap,
-    pin::Pin,
     sync::{Arc, Mutex, PoisonError},
-    task::{Context, Poll, ready},
 };
 
 use async_trait::async_trait;
-use bytes::Bytes;
-use http_body::{Body, Frame, SizeHint};
+use http_body_util::{BodyExt as _, Limited};
 use object_store::{
     ClientOptions, HeaderValue,
     client::{
@@ -145,44 +142,12 @@ fn most_bytes(request: &HttpRequest) -> u64 {
 }
 
 /// The body of an answer, which fails beyond so many bytes.
-struct Bounded {
-    body: HttpResponseBody,
-    most: u64,
-    left: u64,
-}
-
-impl Body for Bounded {
-    type Data = Bytes;
-    type Error = HttpError;
-
-    fn poll_frame(
-        mut self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-    ) -> Poll<Option<Result<Frame<Bytes>, HttpError>>> {
-        let frame = ready!(Pin::new(&mut self.body).poll_frame(context));
-        let bytes = match &frame {
-            Some(Ok(frame)) => frame.data_ref().map_or(0, Bytes::len) as u64,
-            _ => 0,
-        };
-        Poll::Ready(if let Some(left) = self.left.checked_sub(bytes) {
-            self.left = left;
-            frame
-        } else {
-            let most = self.most;
-            Some(Err(HttpError::new(HttpErrorKind::Decode, AnswerTooLarge { most })))
-        })
-    }
-
-    fn is_end_stream(&self) -> bool {
-        self.body.is_end_stream()
-    }
-
-    fn size_hint(&self) -> SizeHint {
-        // What the server claims is not made room for.
-        let mut hint = SizeHint::new();
-        hint.set_lower(self.body.size_hint().lower().min(self.most));
-        hint
-    }
+fn bounded(body: HttpResponseBody, most: u64) -> HttpResponseBody {
+    let limited = Limited::new(body, usize::try_from(most).unwrap_or(usize::MAX));
+    HttpResponseBody::new(limited.map_err(move |error| match error.downcast() {
+        Ok(error) => *error,
+        Err(_) => HttpError::new(HttpErrorKind::Decode, AnswerTooLarge { most }),
+    }))
 }
 
 /// This machine gives no credentials.
@@ -233,9 +198,7 @@ impl HttpService for Watched {
             let bad = BadAnswer("a range that ends beyond any object".to_owned());
             return Err(HttpError::new(HttpErrorKind::Decode, bad));
         }
-        let (parts, body) = response.into_parts();
-        let body = HttpResponseBody::new(Bounded { body, most, left: most });
-        let response = HttpResponse::from_parts(parts, body);
+        let response = response.map(|body| bounded(body, most));
         let status = response.status();
         if has_range && status.as_u16() == 200 {
             return Err(HttpError::new(HttpErrorKind::Decode, RangeIgnored));

@@ -2,13 +2,9 @@
 
 use std::io;
 
-use corniche_store::Scratch;
+use corniche_store::{Scratch, append_record, take_record};
 
-use crate::{
-    Defect,
-    defect_bytes::{push_defect, take_defect},
-    spool::Spool,
-};
+use crate::{Defect, spool::Spool};
 
 /// Keeps defects until they are told.
 pub(crate) struct Deferred<'a> {
@@ -25,7 +21,7 @@ impl<'a> Deferred<'a> {
 
     pub(crate) fn push(&mut self, defect: &Defect) {
         if self.failed.is_none() {
-            self.failed = self.kept.push(|bytes| push_defect(bytes, defect)).err();
+            self.failed = self.kept.push(|bytes| append_record(bytes, defect)).err();
         }
     }
 
@@ -33,7 +29,7 @@ impl<'a> Deferred<'a> {
     pub(crate) fn tell(self, on_defect: &mut dyn FnMut(Defect)) -> io::Result<()> {
         self.failed.map_or(Ok(()), Err)?;
         let mut kept = self.kept.read();
-        while let Some(defect) = kept.next(take_defect)? {
+        while let Some(defect) = kept.next(take_record)? {
             on_defect(defect);
         }
         Ok(())

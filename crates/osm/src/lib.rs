@@ -77,7 +77,6 @@ mod way_facts;
 
 mod area_loss;
 mod defect;
-mod defect_bytes;
 mod error;
 mod failed;
 mod kept_error;

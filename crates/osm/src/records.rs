@@ -5,7 +5,8 @@
 //!                           Located  by node id ──┘
 //! ```
 
-use corniche_store::SortRecord;
+use corniche_store::{SerdeRecord, SortRecord};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     location::Location,
@@ -28,7 +29,7 @@ pub(crate) struct WayRecord {
 }
 
 /// Which version of an object a record is, and where it stands. The newest comes first where an object may be in several extracts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct Origin {
     /// Where an object may be in several extracts: the smaller, the newer. Else 0.
     pub(crate) age: u32,
@@ -53,14 +54,14 @@ impl Origin {
         *count += 1;
     }
 
-    pub(crate) fn encode(self, bytes: &mut Vec<u8>) {
+    fn encode(self, bytes: &mut Vec<u8>) {
         push_varint(bytes, self.age.into());
         push_varint(bytes, self.order);
         push_signed(bytes, self.version.into());
         push_varint(bytes, self.file.into());
     }
 
-    pub(crate) fn decode(bytes: &mut &[u8]) -> Option<Self> {
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
         Some(Self {
             age: take_number(bytes)?,
             order: take_number(bytes)?,
@@ -97,18 +98,10 @@ impl SortRecord for WayRecord {
 }
 
 /// The id of a node or a way that is looked for.
-#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct SoughtId(pub(crate) i64);
 
-impl SortRecord for SoughtId {
-    fn encode(&self, bytes: &mut Vec<u8>) {
-        push_signed(bytes, self.0);
-    }
-
-    fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        take_signed(bytes).map(Self)
-    }
-}
+impl SerdeRecord for SoughtId {}
 
 /// A node that a way names. The nodes of all ways are numbered through, in the order of the ways.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,6 +1,6 @@
 //! Records come back in their order with any amount of memory.
 
-use corniche_store::MemoryScratch;
+use corniche_testing::MemoryScratch;
 use proptest::prelude::*;
 
 use super::*;

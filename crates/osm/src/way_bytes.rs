@@ -21,7 +21,7 @@ use crate::{
     LeftOutReason,
     spool::damaged,
     wire::{
-        push_bytes, push_signed, push_varint, take_array, take_bytes, take_number, varint, zigzag,
+        push_bytes, push_signed, push_varint, take_array, take_number, take_text, varint, zigzag,
     },
 };
 
@@ -121,7 +121,7 @@ pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
     let [class] = take_array(bytes)?;
     let codes = take_array(bytes)?;
     let width_mm = take_number(bytes)?;
-    let road = RoadAttributes::from_parts(codes, width_mm, || take_str(bytes).map(str::to_owned))?;
+    let road = RoadAttributes::from_parts(codes, width_mm, || take_text(bytes).map(str::to_owned))?;
     Some(WayKind::Road(FunctionalRoadClass::new(class)?, road))
 }
 
@@ -129,7 +129,7 @@ pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
 pub(crate) fn take_left_out<'b>(bytes: &mut &'b [u8]) -> Option<LeftOutWay<&'b str>> {
     let [_, reason] = take_array(bytes)?;
     let reason = *LeftOutReason::ALL.get(usize::from(reason))?;
-    let highway = take_str(bytes)?;
+    let highway = take_text(bytes)?;
     let [structure, layer] = take_array(bytes)?;
     let carrier = match structure.checked_sub(1) {
         Some(code) => Some((*Structure::ALL.get(usize::from(code))?, layer.cast_signed())),
@@ -141,10 +141,6 @@ pub(crate) fn take_left_out<'b>(bytes: &mut &'b [u8]) -> Option<LeftOutWay<&'b s
 /// Whether what follows the nodes is that of a way that carries bridges and tunnels, although it is left out.
 pub(crate) fn is_carrier(after_nodes: &[u8]) -> bool {
     matches!(after_nodes, [LEFT_OUT, .., structure, _] if *structure > 0)
-}
-
-fn take_str<'b>(bytes: &mut &'b [u8]) -> Option<&'b str> {
-    str::from_utf8(take_bytes(bytes)?).ok()
 }
 
 #[cfg(test)]

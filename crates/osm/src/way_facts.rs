@@ -2,12 +2,10 @@
 
 use std::io;
 
+use corniche_store::{record_bytes, take_record};
 use serde::{Deserialize, Serialize};
 
 use crate::{Defect, ExtractSummary, spool::damaged};
-
-/// More than any way has: its defects name a value or two of a few hundred characters.
-const MOST_BYTES: usize = 1 << 16;
 
 /// What one way adds to the counts, and what is wrong with its tags.
 #[derive(Debug, Default, Serialize, Deserialize)]
@@ -19,17 +17,11 @@ pub(crate) struct WayFacts {
 impl WayFacts {
     /// The facts as bytes, which are never empty.
     pub(crate) fn to_bytes(&self) -> Box<[u8]> {
-        // Writing to a list cannot fail, and all of it can be written.
-        let written = bincode::serde::encode_to_vec(self, bincode::config::standard());
-        debug_assert!(written.is_ok(), "{self:?}");
-        written.unwrap_or_default().into()
+        record_bytes(self).into()
     }
 
     /// The facts that [`Self::to_bytes`] wrote.
-    pub(crate) fn of_bytes(bytes: &[u8]) -> io::Result<Self> {
-        let limited = bincode::config::standard().with_limit::<MOST_BYTES>();
-        let (facts, _) =
-            bincode::serde::decode_from_slice(bytes, limited).map_err(|_| damaged())?;
-        Ok(facts)
+    pub(crate) fn of_bytes(mut bytes: &[u8]) -> io::Result<Self> {
+        take_record(&mut bytes).ok_or_else(damaged)
     }
 }

@@ -3,7 +3,10 @@
 //! Source: Google, *Protocol Buffers Documentation* (2024), "Encoding".
 
 use corniche_varints::BadVarint;
-pub(crate) use corniche_varints::{push_varint, to_zigzag, varint, zigzag};
+pub(crate) use corniche_varints::{
+    push_bytes, push_signed, push_varint, take_array, take_bytes, take_number, take_signed,
+    take_text, to_zigzag, varint, zigzag,
+};
 
 /// Why bytes are no message.
 pub(crate) type WireError = &'static str;
@@ -149,40 +152,6 @@ impl Iterator for Numbers<'_> {
         }
         Some(number)
     }
-}
-
-/// Writes a signed number of a record for scratch space.
-pub(crate) fn push_signed(bytes: &mut Vec<u8>, number: i64) {
-    push_varint(bytes, to_zigzag(number));
-}
-
-/// Writes bytes of a record, and how many there are.
-pub(crate) fn push_bytes(bytes: &mut Vec<u8>, own: &[u8]) {
-    push_varint(bytes, own.len() as u64);
-    bytes.extend(own);
-}
-
-/// Takes a number of a record that must fit.
-pub(crate) fn take_number<T: TryFrom<u64>>(bytes: &mut &[u8]) -> Option<T> {
-    varint(bytes).ok()?.try_into().ok()
-}
-
-/// Takes what [`push_signed`] wrote.
-pub(crate) fn take_signed(bytes: &mut &[u8]) -> Option<i64> {
-    varint(bytes).ok().map(zigzag)
-}
-
-/// Takes what [`push_bytes`] wrote.
-pub(crate) fn take_bytes<'b>(bytes: &mut &'b [u8]) -> Option<&'b [u8]> {
-    let length = take_number(bytes)?;
-    bytes.split_off(..length)
-}
-
-/// Takes bytes of which it is known how many there are.
-pub(crate) fn take_array<const N: usize>(bytes: &mut &[u8]) -> Option<[u8; N]> {
-    let (own, rest) = bytes.split_first_chunk()?;
-    *bytes = rest;
-    Some(*own)
 }
 
 #[cfg(test)]

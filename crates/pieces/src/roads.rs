@@ -11,4 +11,3 @@ pub mod pieces;
 pub mod proportions;
 pub mod split;
 pub mod totals;
-mod varints;

@@ -20,7 +20,7 @@ impl Files {
         Arc::new(Self { disk })
     }
 
-    /// Opens a file. Of kind `NotFound` and `AlreadyExists` the caller may make sense; see [`is_kind`].
+    /// Opens a file. Of kind `AlreadyExists` the caller may make sense; see [`is_kind`].
     pub(crate) fn open(
         self: &Arc<Self>,
         path: &Path,
@@ -29,6 +29,15 @@ impl Files {
         let doing = if mode == OpenMode::New { "create" } else { "open" };
         let file = named(path, doing, || self.disk.open(path, mode))?;
         Ok(OpenFile { file, path: path.to_owned(), files: Arc::clone(self) })
+    }
+
+    /// The same for a file that need not be there; `None` where it is not.
+    pub(crate) fn open_if_there(
+        self: &Arc<Self>,
+        path: &Path,
+        mode: OpenMode,
+    ) -> Result<Option<OpenFile>, StoreError> {
+        absent_is_none(self.open(path, mode))
     }
 
     /// Makes a folder unless it is there.
@@ -41,14 +50,11 @@ impl Files {
 
     /// What a folder holds, by name; `None` if the folder is not there.
     pub(crate) fn list(&self, folder: &Path) -> Result<Option<Vec<Listed>>, StoreError> {
-        match named(folder, "list", || self.disk.list(folder)) {
-            Ok(mut listed) => {
-                listed.sort();
-                Ok(Some(listed))
-            }
-            Err(error) if is_kind(&error, io::ErrorKind::NotFound) => Ok(None),
-            Err(error) => Err(error),
+        let mut listed = absent_is_none(named(folder, "list", || self.disk.list(folder)))?;
+        if let Some(listed) = &mut listed {
+            listed.sort();
         }
+        Ok(listed)
     }
 
     pub(crate) fn rename(&self, from: &Path, to: &Path) -> Result<(), StoreError> {
@@ -57,12 +63,12 @@ impl Files {
 
     /// Removes a file, if it is there.
     pub(crate) fn remove(&self, path: &Path) -> Result<(), StoreError> {
-        absent_is_fine(named(path, "remove", || self.disk.remove(path)))
+        absent_is_none(named(path, "remove", || self.disk.remove(path))).map(drop)
     }
 
     /// Removes an empty folder, if it is there.
     pub(crate) fn remove_folder(&self, path: &Path) -> Result<(), StoreError> {
-        absent_is_fine(named(path, "remove the folder", || self.disk.remove_folder(path)))
+        absent_is_none(named(path, "remove the folder", || self.disk.remove_folder(path))).map(drop)
     }
 
     pub(crate) fn sync_folder(&self, folder: &Path) -> Result<(), StoreError> {
@@ -83,10 +89,6 @@ pub(crate) struct OpenFile {
 }
 
 impl OpenFile {
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
     pub(crate) fn files(&self) -> &Arc<Files> {
         &self.files
     }
@@ -103,11 +105,11 @@ impl OpenFile {
         Ok(())
     }
 
-    pub(crate) fn read_exact_at(&self, bytes: &mut [u8], offset: u64) -> Result<(), StoreError> {
-        if self.read_up_to(bytes, offset)? == bytes.len() {
-            return Ok(());
-        }
-        named(&self.path, "read", || Err(io::ErrorKind::UnexpectedEof.into()))
+    /// Its first bytes, so many or all.
+    pub(crate) fn read_start(&self, most: u64) -> Result<Vec<u8>, StoreError> {
+        let mut bytes = vec![0; self.length()?.min(most) as usize];
+        self.read_exact_at(&mut bytes, 0)?;
+        Ok(bytes)
     }
 
     /// Reads what is there, up to the end of `bytes` or of the file; returns how many bytes that are.
@@ -123,10 +125,6 @@ impl OpenFile {
             length += read;
         }
         Ok(length)
-    }
-
-    pub(crate) fn length(&self) -> Result<u64, StoreError> {
-        named(&self.path, "get the length of", || self.file.length())
     }
 
     pub(crate) fn set_length(&self, length: u64) -> Result<(), StoreError> {
@@ -152,15 +150,18 @@ impl OpenFile {
 
 impl PartFile for OpenFile {
     fn path(&self) -> &Path {
-        self.path()
+        &self.path
     }
 
     fn length(&self) -> Result<u64, StoreError> {
-        self.length()
+        named(&self.path, "get the length of", || self.file.length())
     }
 
     fn read_exact_at(&self, bytes: &mut [u8], offset: u64) -> Result<(), StoreError> {
-        self.read_exact_at(bytes, offset)
+        if self.read_up_to(bytes, offset)? == bytes.len() {
+            return Ok(());
+        }
+        named(&self.path, "read", || Err(io::ErrorKind::UnexpectedEof.into()))
     }
 }
 
@@ -169,10 +170,10 @@ pub(crate) fn is_kind(error: &StoreError, kind: io::ErrorKind) -> bool {
     matches!(error, StoreError::Io { source, .. } if source.kind() == kind)
 }
 
-fn absent_is_fine(result: Result<(), StoreError>) -> Result<(), StoreError> {
+fn absent_is_none<T>(result: Result<T, StoreError>) -> Result<Option<T>, StoreError> {
     match result {
-        Err(error) if is_kind(&error, io::ErrorKind::NotFound) => Ok(()),
-        result => result,
+        Err(error) if is_kind(&error, io::ErrorKind::NotFound) => Ok(None),
+        result => result.map(Some),
     }
 }
 

@@ -38,6 +38,7 @@ mod in_memory_store;
 mod local;
 mod output_target;
 mod parts_place;
+mod record_bytes;
 mod scratch;
 mod sorter;
 mod stored_plan;
@@ -47,7 +48,7 @@ pub use artifacts::{Artifacts, Key};
 pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 pub use error::StoreError;
 pub use ids::random_digits;
-pub use in_memory_store::{MemoryScratch, MemoryStore};
+pub use in_memory_store::MemoryStore;
 pub use local::{
     FORMAT_VERSION, Folder, LocalScratch, LocalStore, OwnPart, PARTS_NAME, PLAN_NAME, STORE_NAME,
     SYNC_INTERVAL, SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,
@@ -57,7 +58,8 @@ pub use output_target::{
     folder_of, is_same_file, make_own_folder, open_own, sync_folder, sync_tree,
 };
 pub use parts_place::{PartFile, PartsPlace, Publish};
+pub use record_bytes::{append_record, record_bytes, take_record};
 pub use scratch::{Scratch, Span};
-pub use sorter::{Groups, SortRecord, Sorted, Sorter};
+pub use sorter::{Groups, SerdeRecord, SortRecord, Sorted, Sorter};
 pub use stored_plan::{PlanHash, StoredPlan};
 pub use system_disk::SystemDisk;

@@ -9,7 +9,9 @@ use std::{
     io, mem,
 };
 
-use crate::{Scratch, Span};
+use serde::{Serialize, de::DeserializeOwned};
+
+use crate::{Scratch, Span, append_record, take_record};
 
 /// A record that can be sorted outside memory. Records that compare equal come back in any order, so they must be the same.
 pub trait SortRecord: Ord + Sized + Send {
@@ -22,6 +24,28 @@ pub trait SortRecord: Ord + Sized + Send {
     /// The memory that it takes, bytes, beside its own size: that of its lists and texts.
     fn extra_bytes(&self) -> usize {
         0
+    }
+}
+
+/// A record that can be sorted, whose bytes are those that serde makes.
+pub trait SerdeRecord: Ord + Send + Serialize + DeserializeOwned {
+    /// See [`SortRecord::extra_bytes`].
+    fn extra_bytes(&self) -> usize {
+        0
+    }
+}
+
+impl<T: SerdeRecord> SortRecord for T {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        append_record(bytes, self);
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        take_record(bytes)
+    }
+
+    fn extra_bytes(&self) -> usize {
+        SerdeRecord::extra_bytes(self)
     }
 }
 

@@ -1,11 +1,33 @@
 //! Records are sorted as `Vec::sort` sorts them, however little memory there is.
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{
+    Mutex,
+    atomic::{AtomicU64, Ordering},
+};
 
 use proptest::prelude::*;
 
 use super::*;
-use crate::MemoryScratch;
+
+/// Scratch space in memory. That of `corniche_testing` is one of another version of this crate.
+#[derive(Debug, Default)]
+struct MemoryScratch(Mutex<Vec<u8>>);
+
+impl Scratch for MemoryScratch {
+    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+        let mut all = self.0.lock().unwrap();
+        all.extend(bytes);
+        let length = bytes.len() as u64;
+        Ok(Span { offset: all.len() as u64 - length, length })
+    }
+
+    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+        let from = span.offset as usize;
+        let all = self.0.lock().unwrap();
+        let read = all.get(from..from + span.length as usize);
+        read.map(<[u8]>::to_vec).ok_or_else(|| io::ErrorKind::UnexpectedEof.into())
+    }
+}
 
 /// A record of changing length.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]

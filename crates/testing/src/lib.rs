@@ -25,6 +25,8 @@ pub mod disks;
 #[cfg(feature = "hostile")]
 pub mod hostile;
 mod lengths;
+#[cfg(feature = "disks")]
+mod memory_scratch;
 #[cfg(feature = "packages")]
 pub mod package;
 pub mod payload;
@@ -48,6 +50,8 @@ pub use coast_extract::extract_with_coast;
 pub use colour_image::ColourImage;
 pub use data::{real_data, root, sample, srtm_heights};
 pub use lengths::length_steps;
+#[cfg(feature = "disks")]
+pub use memory_scratch::MemoryScratch;
 pub use projection::FlatProjection;
 pub use random::Random;
 #[cfg(feature = "rasters")]

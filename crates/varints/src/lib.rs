@@ -6,6 +6,12 @@
 //!
 //! This crate knows no file and no message.
 
+mod records;
+
+pub use records::{
+    push_bytes, push_signed, take_array, take_bytes, take_number, take_signed, take_text,
+};
+
 /// Why bytes do not begin with a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BadVarint {

@@ -1,6 +1,6 @@
 //! Gives each object the ways of its outline, with their places.
 
-use corniche_store::{SortRecord as _, Sorter};
+use corniche_store::{Sorter, take_record};
 
 use crate::{
     failed::Failed,
@@ -20,7 +20,7 @@ pub(crate) fn hand_parts<'a>(
 ) -> Result<Sorter<'a, OutlineWayRecord>, Failed> {
     let mut parts = Sorter::new(reading.request.scratch, reading.shares().way_ids);
     let mut count = 0;
-    while let Some(record) = members.next(MemberRecord::decode)? {
+    while let Some(record) = members.next(take_record)? {
         let MemberRecord { member, object_number } = record;
         let way_id = member.way_id;
         reading.check_stop_at(count)?;

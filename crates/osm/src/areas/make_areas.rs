@@ -6,7 +6,7 @@ use corniche_areas::{
     Area, AreaClass, AreaObject, Assembled, Coastline, OutlineError, OutlineWay, Polygon, assemble,
 };
 use corniche_geom::{LatticePoint, split_at_seam};
-use corniche_store::Sorted;
+use corniche_store::{Sorted, take_record};
 use rayon::prelude::*;
 
 use super::{over_seam, summary::AreaSummary};
@@ -16,7 +16,7 @@ use crate::{
     failed::Failed,
     layer_sink::LayerSink,
     looked::check_held,
-    outlines::records::{Known, OutlineWayRecord, degrees_of, to_point},
+    outlines::records::{ObjectRecord, OutlineWayRecord, degrees_of, to_point},
     read_request::Placing,
     reading::Reading,
     spool::SpoolReader,
@@ -46,7 +46,7 @@ pub(crate) fn make_areas(
         let mut batch = Vec::new();
         let mut points = 0;
         while batch.len() < threads * OBJECTS_PER_THREAD && points < threads * POINTS_PER_THREAD {
-            let next = known.next(Known::decode)?;
+            let next = known.next(take_record)?;
             let Some(known) = next else { break };
             let parts = parts_of(&mut all_parts, number)?;
             points +=
@@ -109,7 +109,7 @@ struct Made {
     defects: Vec<Defect>,
 }
 
-fn make(known: Known, parts: &[OutlineWayRecord], placing: Placing<'_>) -> Made {
+fn make(known: ObjectRecord, parts: &[OutlineWayRecord], placing: Placing<'_>) -> Made {
     let (kind, id) = known.object.parts();
     let is_relation = kind == "relation";
     let mut defects = Vec::new();
@@ -152,12 +152,12 @@ fn coastlines(
 }
 
 fn try_making(
-    (known, class): (Known, AreaClass),
+    (known, class): (ObjectRecord, AreaClass),
     parts: &[OutlineWayRecord],
     placing: Placing<'_>,
     defects: &mut Vec<Defect>,
 ) -> Result<Area, AreaLoss> {
-    let Known { object, name, .. } = known;
+    let ObjectRecord { object, name, .. } = known;
     let (kind, id) = object.parts();
     let mut missing = 0;
     let mut ways: Vec<Line> = Vec::new();

@@ -1,6 +1,7 @@
 //! Lines of a layer and what is wrong with them are handed out in order of their ways.
 
 use corniche_areas::ClassedLayer;
+use corniche_store::take_record;
 
 use super::{
     classed_line::ClassedLine,
@@ -13,7 +14,7 @@ use crate::{
     failed::Failed,
     layer_sink::{LayerSink, NamesSink},
     looked::check_held,
-    outlines::{found::OutlineObjects, located_ways::LocatedWays, records::Known},
+    outlines::{found::OutlineObjects, located_ways::LocatedWays, records::ObjectRecord},
     reading::Reading,
 };
 
@@ -32,7 +33,7 @@ pub(crate) fn hand_out_lines<'a>(
     check_held(reading, held_bytes + count)?;
     let mut classes = Vec::with_capacity(count as usize);
     let mut names = on_name.map(|on_name| LineNames { objects: Vec::new(), on_name });
-    while let Some(object) = known.next(Known::decode)? {
+    while let Some(object) = known.next(take_record::<ObjectRecord>)? {
         classes.push(object.class.unwrap_or(NO_CLASS));
         if let Some(names) = &mut names {
             names.objects.push(object);

@@ -4,13 +4,13 @@ use corniche_areas::{AreaObject, ClassedLayer};
 
 use crate::{
     layer_sink::NamesSink,
-    outlines::{located_ways::LocatedWay, records::Known},
+    outlines::{located_ways::LocatedWay, records::ObjectRecord},
 };
 
 /// Objects with their names, and who is told these.
 pub(crate) struct LineNames<'a, 'b> {
     /// All objects, by their numbers.
-    pub(crate) objects: Vec<Known>,
+    pub(crate) objects: Vec<ObjectRecord>,
     pub(crate) on_name: &'a mut NamesSink<'b>,
 }
 
@@ -19,7 +19,8 @@ impl LineNames<'_, '_> {
     pub(crate) fn tell(&mut self, layer: ClassedLayer, way: &LocatedWay, numbers: &[u64]) {
         let is_closed = way.places.first() == way.places.last();
         for &number in numbers {
-            let Some(Known { object, class, name, .. }) = self.objects.get(number as usize) else {
+            let Some(ObjectRecord { object, class, name, .. }) = self.objects.get(number as usize)
+            else {
                 continue;
             };
             // An open way bounds nothing by itself: its name is that of a line.

@@ -4,7 +4,7 @@ use std::{io, iter};
 
 use corniche_areas::{ClassedLayer, LineClass};
 use corniche_geom::{LatticePoint, split_at_seam};
-use corniche_store::SortRecord as _;
+use corniche_store::take_record;
 
 use super::{classed_line::ClassedLine, line_names::LineNames, summary::LineSummary};
 use crate::{
@@ -38,7 +38,8 @@ pub(crate) fn make_lines(
     (sink, on_defect): (&mut dyn LayerSink<ClassedLine, LineSummary>, &mut dyn FnMut(Defect)),
     mut names: Option<LineNames<'_, '_>>,
 ) -> Result<(), Failed> {
-    let records = Ahead::new(iter::from_fn(|| members.next(MemberRecord::decode).transpose()));
+    let records =
+        Ahead::new(iter::from_fn(|| members.next(take_record::<MemberRecord>).transpose()));
     let mut members = Members { records, objects: Vec::new() };
     let (mut count, all) = (0, located.count);
     while let Some((way_id, class)) = members.next_way(classes)? {

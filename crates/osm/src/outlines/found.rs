@@ -125,7 +125,7 @@ impl<'a> Outlines<'a> {
 
 /// Objects of one kind, all that is known of them but for the places of their ways.
 pub(crate) struct OutlineObjects<'a> {
-    /// [`super::records::Known`] of each object, in the order of their numbers.
+    /// [`ObjectRecord`] of each object, without its ways, in the order of their numbers.
     pub(crate) known: SpoolReader<'a>,
     pub(crate) count: u64,
     /// How many more have the id of another one.

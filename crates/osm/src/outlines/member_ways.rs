@@ -2,7 +2,7 @@
 
 use std::io;
 
-use corniche_store::{SortRecord as _, Sorted};
+use corniche_store::{Sorted, append_record};
 
 use super::records::MemberRecord;
 use crate::{ahead::Ahead, records::WayRecord, spool::Spool};
@@ -29,7 +29,7 @@ impl<'a> MemberWays<'a> {
             if record.member.way_id >= way_id {
                 return Ok(record.member.way_id == way_id);
             }
-            self.kept.push(|bytes| record.encode(bytes))?;
+            self.kept.push(|bytes| append_record(bytes, record))?;
             self.members.take();
         }
         Ok(false)
@@ -38,7 +38,7 @@ impl<'a> MemberWays<'a> {
     /// All members, in order of the ids of their ways.
     pub(crate) fn into_members(mut self) -> io::Result<Spool<'a>> {
         while let Some(&record) = self.members.peek()? {
-            self.kept.push(|bytes| record.encode(bytes))?;
+            self.kept.push(|bytes| append_record(bytes, record))?;
             self.members.take();
         }
         Ok(self.kept)

@@ -1,7 +1,7 @@
 //! Numbers objects that ways outline.
 
 use corniche_areas::AreaObject;
-use corniche_store::Sorter;
+use corniche_store::{Sorter, append_record};
 
 use super::records::{MemberRecord, ObjectRecord};
 use crate::{
@@ -14,7 +14,7 @@ use crate::{
 
 /// Objects in the order of their numbers, and the ways that they need.
 pub(crate) struct NumberedObjects<'a> {
-    /// [`super::records::Known`] of each object.
+    /// Each object, without its ways.
     pub(crate) known: Spool<'a>,
     pub(crate) count: u64,
     /// How many more have the id of another one.
@@ -40,7 +40,7 @@ pub(crate) fn number_objects<'a>(
     let mut last: Option<(AreaObject, u32, Option<i32>)> = None;
     for (count, object) in (0..).zip(objects.finish()?) {
         reading.check_stop_at(count)?;
-        let object = object?;
+        let mut object = object?;
         let version = known_version(object.origin.version);
         if let Some((before, file, first)) = last
             && before == object.object
@@ -62,8 +62,8 @@ pub(crate) fn number_objects<'a>(
             continue;
         }
         last = Some((object.object, object.origin.file, version));
-        let (known, ways) = object.into_known();
-        numbered.known.push(|bytes| known.encode(bytes))?;
+        let ways = std::mem::take(&mut object.ways);
+        numbered.known.push(|bytes| append_record(bytes, object))?;
         for &member in &ways {
             let record = MemberRecord { member, object_number: numbered.count };
             numbered.members.push(record)?;

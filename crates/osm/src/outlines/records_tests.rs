@@ -2,6 +2,8 @@
 
 use std::fmt::Debug;
 
+use corniche_store::SortRecord;
+
 use super::*;
 
 fn comes_back<T: SortRecord + PartialEq + Debug>(record: &T) {

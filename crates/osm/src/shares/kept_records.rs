@@ -1,13 +1,11 @@
 //! What is kept in blocks, and how: ways and places that they give as they are sorted anyway, places of nodes as differences.
 
-use corniche_store::SortRecord;
+use corniche_store::{SortRecord, append_record, take_record};
 
-use super::{blocks::BlockRecord, merged::HasId};
+use super::blocks::BlockRecord;
 use crate::{
     Defect,
-    defect_bytes::{push_defect, take_defect},
     location::Location,
-    records::{Located, WayRecord},
     wire::{push_varint, to_zigzag, varint, zigzag},
 };
 
@@ -59,13 +57,8 @@ impl BlockRecord for PlaceRecord {
     }
 }
 
-impl HasId for PlaceRecord {
-    fn id(&self) -> i64 {
-        self.node_id
-    }
-}
-
-impl BlockRecord for WayRecord {
+/// What is sorted stands in blocks as it does in scratch space.
+impl<T: SortRecord> BlockRecord for T {
     type Before = ();
 
     fn write(&self, (): &mut (), bytes: &mut Vec<u8>) {
@@ -74,34 +67,6 @@ impl BlockRecord for WayRecord {
 
     fn take((): &mut (), bytes: &mut &[u8]) -> Option<Self> {
         Self::decode(bytes)
-    }
-}
-
-impl HasId for WayRecord {
-    fn id(&self) -> i64 {
-        self.way_id
-    }
-
-    fn age(&self) -> u32 {
-        self.origin.age
-    }
-}
-
-impl BlockRecord for Located {
-    type Before = ();
-
-    fn write(&self, (): &mut (), bytes: &mut Vec<u8>) {
-        self.encode(bytes);
-    }
-
-    fn take((): &mut (), bytes: &mut &[u8]) -> Option<Self> {
-        Self::decode(bytes)
-    }
-}
-
-impl HasId for Located {
-    fn id(&self) -> i64 {
-        self.node_id
     }
 }
 
@@ -109,11 +74,11 @@ impl BlockRecord for Defect {
     type Before = ();
 
     fn write(&self, (): &mut (), bytes: &mut Vec<u8>) {
-        push_defect(bytes, self);
+        append_record(bytes, self);
     }
 
     fn take((): &mut (), bytes: &mut &[u8]) -> Option<Self> {
-        take_defect(bytes)
+        take_record(bytes)
     }
 }
 

@@ -24,6 +24,7 @@ use crate::{
     number_nodes::{NumberedNodes, number_nodes},
     read_request::ReadRequest,
     reading::{LayerCount, Reading, Step},
+    records::{Located, WayRecord},
     share::Share,
     versions::Versions,
     ways::add_summary,
@@ -89,8 +90,10 @@ pub fn read_kept_roads(
         .iter()
         .map(|&share| Ok(BlockReader::new(kept, kept.kinds.places, share, blocks_of(kept, share)?)))
         .collect();
-    let mut nodes = KeptNodes { places: Ahead::new(Merged::new(places.map_err(failed)?)) };
-    let ways = Merged::new(ways.collect());
+    let mut nodes = KeptNodes {
+        places: Ahead::new(Merged::new(places.map_err(failed)?, |place| (place.node_id, 0))),
+    };
+    let ways = Merged::new(ways.collect(), |way: &WayRecord| (way.way_id, way.origin.age));
     let on_duplicate = &mut |defect| defects.push(&defect);
     let numbered = number_nodes(&reading, ways, &mut summary, on_duplicate, None)
         .map_err(|error| reading.failed(error))?;
@@ -98,7 +101,7 @@ pub fn read_kept_roads(
         numbered;
     let mentions = mentions.finish().map_err(|error| reading.failed(error))?;
     let questions = vec![NodeQuestions { mentions, mentions_count, left_out }];
-    let located = Merged::new(located.collect());
+    let located = Merged::new(located.collect(), |located: &Located| (located.node_id, 0));
     let on_conflict = &mut |_, defect| defects.push(&defect);
     let answers = locate_nodes(&reading, &mut nodes, questions, located, on_conflict)
         .map_err(|error| reading.failed(error))?;

@@ -1,5 +1,6 @@
 //! What is known of a share's blobs beside its ways: the record that says that the share is complete.
 
+use corniche_store::{record_bytes, take_record};
 use serde::{Deserialize, Serialize};
 
 use super::kept::Kept;
@@ -29,17 +30,13 @@ pub(crate) struct WaysRecord {
 
 impl WaysRecord {
     pub(crate) fn put(&self, kept: Kept<'_>, share: Share) -> Result<(), KeptError> {
-        let bytes = bincode::serde::encode_to_vec(self, bincode::config::standard());
-        let bytes = bytes
-            .map_err(|_| KeptError::Damaged { share, what: "its record cannot be written" })?;
-        kept.put_record(kept.kinds.ways_records, share, &bytes)
+        kept.put_record(kept.kinds.ways_records, share, &record_bytes(self))
     }
 
     pub(crate) fn get(kept: Kept<'_>, share: Share) -> Result<Self, KeptError> {
         let bytes = kept.record(kept.kinds.ways_records, "ways", share)?;
-        match bincode::serde::decode_from_slice(&bytes, bincode::config::standard()) {
-            Ok((record, used)) if used == bytes.len() => Ok(record),
-            _ => Err(KeptError::Damaged { share, what: "its record of ways makes no sense" }),
-        }
+        let mut rest = &*bytes;
+        let record = take_record(&mut rest).filter(|_| rest.is_empty());
+        record.ok_or(KeptError::Damaged { share, what: "its record of ways makes no sense" })
     }
 }

@@ -8,7 +8,7 @@ use crate::common::{outlined::read_areas, to_lattice};
 use corniche_areas::{Area, AreaClass, AreaObject, AreaTable};
 use corniche_osm::{AreaLoss, AreaSummary, Defect, ReadOsmError, ReadRequest};
 use corniche_presets::{area_preset, parse_area_table};
-use corniche_store::MemoryScratch;
+use corniche_testing::MemoryScratch;
 use corniche_testing::pbf::{Block, deltas, field, file, number};
 
 struct Found {

@@ -14,8 +14,7 @@ use corniche_areas::{Area, AreaObject, AreaTable, Polygon};
 use corniche_geom::wgs84;
 use corniche_osm::{AreaLoss, AreaSummary, Defect, ReadRequest};
 use corniche_presets::{area_preset, parse_area_table};
-use corniche_store::MemoryScratch;
-use corniche_testing::real_data;
+use corniche_testing::{MemoryScratch, real_data};
 use serde_json::{Value, json};
 
 /// Areas of osmium, m², by object: all closed ways with a tag of the table, and all relations.

@@ -9,7 +9,7 @@ use corniche_areas::{BoundaryClass, ClassedLayer, LineClass};
 use corniche_osm::{
     ClassedLine, Defect, LayerSink, Layers, LineLoss, LineSummary, ReadRequest, read_extract,
 };
-use corniche_store::MemoryScratch;
+use corniche_testing::MemoryScratch;
 use corniche_testing::pbf::{Block, file};
 
 #[derive(Default)]

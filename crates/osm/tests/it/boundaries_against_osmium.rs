@@ -7,8 +7,7 @@ use std::{collections::BTreeMap, path::Path, process::Command};
 use crate::common::{default_table, outlined::read_lines, to_lattice};
 use corniche_areas::{BoundaryClass, ClassedLayer};
 use corniche_osm::{Defect, LineLoss, ReadRequest};
-use corniche_store::MemoryScratch;
-use corniche_testing::real_data;
+use corniche_testing::{MemoryScratch, real_data};
 
 /// The class that tags give, told here once more: `Tkey=value,key=value`.
 fn class_of(fields: &str) -> Option<BoundaryClass> {

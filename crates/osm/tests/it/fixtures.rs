@@ -11,7 +11,7 @@ use crate::common::{Extract, fixture, read, read_with, request, roads::read_road
 use corniche_geom::LatticePoint;
 use corniche_osm::{Defect, ReadOsmError};
 use corniche_roads::{Form, Oneway, Road, Structure};
-use corniche_store::MemoryScratch;
+use corniche_testing::MemoryScratch;
 
 fn road(extract: &Extract, way_id: i64) -> &Road {
     extract.roads.iter().find(|road| road.way_id == way_id).unwrap()

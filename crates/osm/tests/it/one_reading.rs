@@ -14,7 +14,7 @@ use corniche_osm::{
 };
 use corniche_presets::{area_preset, parse_area_table};
 use corniche_roads::Road;
-use corniche_store::MemoryScratch;
+use corniche_testing::MemoryScratch;
 use corniche_testing::{
     pbf::{Block, plain_header, raw},
     real_data, sample,

@@ -13,7 +13,8 @@ use crate::common::{
 use corniche_osm::{
     Defect, ExtractSummary, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways,
 };
-use corniche_store::{MemoryScratch, MemoryStore};
+use corniche_store::MemoryStore;
+use corniche_testing::MemoryScratch;
 use corniche_testing::pbf::{Block, field, number, plain_header, raw, zigzag};
 use proptest::prelude::*;
 

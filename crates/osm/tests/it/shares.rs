@@ -10,7 +10,8 @@ use crate::common::{
     read, request, to_lattice, written,
 };
 use corniche_osm::{KeptError, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways};
-use corniche_store::{Artifacts, Key, MemoryScratch, MemoryStore, Scratch};
+use corniche_store::{Artifacts, Key, MemoryStore, Scratch};
+use corniche_testing::MemoryScratch;
 use corniche_testing::{
     pbf::{Block, field, number, plain_header, raw},
     real_data, sample,

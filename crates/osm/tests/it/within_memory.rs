@@ -16,7 +16,8 @@ use crate::common::{
     roads::read_roads_from, to_lattice,
 };
 use corniche_osm::{ReadOsmError, ReadRequest};
-use corniche_store::{MemoryScratch, Scratch, Span};
+use corniche_store::{Scratch, Span};
+use corniche_testing::MemoryScratch;
 use corniche_testing::{
     pbf::{Block, plain_header, raw},
     real_data,

@@ -7,7 +7,7 @@ use corniche_areas::{
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, LatticeRegion, TileId};
 use corniche_osm::{AreaLoss, AreaSummary};
 use corniche_spec::{Defect, artifacts::damaged, data_tiles::DataTiles, extent::AreaExtent};
-use corniche_store::{Artifacts, Scratch};
+use corniche_store::{Artifacts, Scratch, record_bytes, take_record};
 use corniche_tileset::{AreaRecord, AreaRings, encode_areas};
 use corniche_work::Stage;
 
@@ -17,7 +17,7 @@ use crate::{
     layers::{
         SectionLayer,
         layer_writer::{LayerContext, TileLayer, TileSplitting},
-        parts_by_tile::{PartsByTile, part_bytes, part_of_bytes},
+        parts_by_tile::PartsByTile,
         plan_splitting::PlanSplitting,
         tile_section::AreaTotals,
         tile_section::TileSection,
@@ -181,7 +181,7 @@ impl TileSplitting for AreaSplitting<'_> {
         let Area { object, class, area_m2, .. } = area;
         let parts = self
             .split(&area)
-            .map(|parts| parts.into_iter().map(|(id, part)| (id, part_bytes(part))).collect());
+            .map(|parts| parts.into_iter().map(|(id, part)| (id, record_bytes(part))).collect());
         SplitArea { number, object, class, area_m2, parts }
     }
 }
@@ -234,7 +234,7 @@ impl<'a> TileLayer for AreaLayer<'a> {
         self.parts.for_each_tile(
             told.observer,
             |parts: &mut Vec<AreaRecord>, tile, _, bytes| {
-                parts.push(part_of_bytes(&bytes).ok_or_else(|| {
+                parts.push(take_record(&mut &*bytes).ok_or_else(|| {
                     let key = SectionLayer::Areas.section().item(tile);
                     damaged(key, &"what was read back is no area")
                 })?);

@@ -8,8 +8,8 @@ use std::{
 
 use corniche_geom::{Bounds, CoordinateTable, GridFrame, NodeIndex, TileId};
 use corniche_roads::{ClassFilter, FrcTable, FunctionalRoadClass};
-use corniche_store::{Key, MemoryScratch, MemoryStore, StoreError};
-use corniche_testing::{FlatProjection, Random, pbf};
+use corniche_store::{Key, MemoryStore, StoreError};
+use corniche_testing::{FlatProjection, MemoryScratch, Random, pbf};
 
 use super::*;
 use crate::{

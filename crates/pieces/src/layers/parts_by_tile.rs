@@ -2,7 +2,7 @@
 
 use corniche_geom::TileId;
 use corniche_spec::Observer;
-use corniche_store::{Scratch, SortRecord, Sorter};
+use corniche_store::{Scratch, SortRecord, Sorter, append_record, take_record};
 use corniche_tileset::pmtiles_order;
 use serde::{Serialize, de::DeserializeOwned};
 
@@ -52,33 +52,6 @@ impl<'a, K: PartKey> PartsByTile<'a, K> {
     }
 }
 
-/// Appends something that is kept for a while.
-pub(crate) fn append(bytes: &mut Vec<u8>, kept: impl Serialize) {
-    // Writing to a list cannot fail, and all that is kept so can be written.
-    let written = bincode::serde::encode_into_std_write(kept, bytes, bincode::config::standard());
-    debug_assert!(written.is_ok());
-}
-
-/// Takes from the front what was appended; `None` where that is something else.
-pub(crate) fn take<T: DeserializeOwned>(bytes: &mut &[u8]) -> Option<T> {
-    let read = bincode::serde::decode_from_slice(bytes, bincode::config::standard());
-    let (taken, used) = read.ok()?;
-    *bytes = &bytes[used..];
-    Some(taken)
-}
-
-/// A part as bytes.
-pub(crate) fn part_bytes(part: impl Serialize) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    append(&mut bytes, part);
-    bytes
-}
-
-/// A part of such bytes; `None` where they are none.
-pub(crate) fn part_of_bytes<T: DeserializeOwned>(mut bytes: &[u8]) -> Option<T> {
-    take(&mut bytes)
-}
-
 /// A part, encoded.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct ObjectPart<K> {
@@ -91,12 +64,12 @@ struct ObjectPart<K> {
 impl<K: PartKey> SortRecord for ObjectPart<K> {
     fn encode(&self, bytes: &mut Vec<u8>) {
         let Self { tile, key, bytes: own } = self;
-        append(bytes, (tile, key, own.len() as u64));
+        append_record(bytes, (tile, key, own.len() as u64));
         bytes.extend(own);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let (tile, key, length): (u64, K, u64) = take(bytes)?;
+        let (tile, key, length): (u64, K, u64) = take_record(bytes)?;
         let (own, rest) = bytes.split_at_checked(usize::try_from(length).ok()?)?;
         *bytes = rest;
         Some(Self { tile, key, bytes: own.to_vec() })

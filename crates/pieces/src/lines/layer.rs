@@ -10,7 +10,7 @@ use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, simpli
 use corniche_spec::{
     artifacts::damaged, levels::Levels, tiles_near::for_each_tile_near, true_lengths::TrueLengths,
 };
-use corniche_store::{Artifacts, Scratch};
+use corniche_store::{Artifacts, Scratch, record_bytes, take_record};
 use corniche_tileset::{LineRecord, encode_lines};
 use corniche_work::Stage;
 
@@ -20,7 +20,7 @@ use crate::{
         SectionLayer,
         fixed_points::fixed_of_part,
         layer_writer::{LayerContext, TileLayer, TileSplitting},
-        parts_by_tile::{PartsByTile, part_bytes, part_of_bytes},
+        parts_by_tile::PartsByTile,
         plan_splitting::PlanSplitting,
         tile_section::LineTotals,
         tile_section::TileSection,
@@ -180,7 +180,7 @@ impl TileSplitting for MeasuredSplitting<'_> {
         };
         let part = |(number, (id, record)): (u64, (TileId, LineRecord))| {
             let order = (class.number(), record.way_id, record.points[0], number);
-            (id, order, part_bytes(&record.points))
+            (id, order, record_bytes(&record.points))
         };
         SplitLine {
             class,
@@ -221,7 +221,7 @@ impl<'a> TileLayer for LinesLayer<'a> {
             told.observer,
             |parts: &mut Vec<LineRecord>, tile, (class, way_id, ..), bytes| {
                 let class = own.class(class);
-                let part = class.zip(part_of_bytes(&bytes)).ok_or_else(|| {
+                let part = class.zip(take_record(&mut &*bytes)).ok_or_else(|| {
                     let key = layer.section().item(tile);
                     damaged(key, &line_text!(own, "what was read back is no " one))
                 });

@@ -3,17 +3,15 @@
 use corniche_roads::Structure;
 use corniche_spec::artifacts::ArtifactError;
 use corniche_spec::{Defect, Loss, Observer, true_lengths::UM};
-use corniche_store::{Artifacts, Scratch, SortRecord, Sorted, Sorter};
+use corniche_store::{Artifacts, Scratch, SerdeRecord, Sorted, Sorter};
 use corniche_tileset::{Counts, RoadLoss, SampleCounts};
+use serde::{Deserialize, Serialize};
 
 use super::{
     lay::RoadFate,
     totals::{BLOCK_ROADS, RoadLength, RoadTotals, lengths_of_block},
 };
-use crate::{
-    ExtractError,
-    layers::parts_by_tile::{append, take},
-};
+use crate::ExtractError;
 
 /// A road's true length at the finest level, micrometres, by what became of it; each part measured by itself.
 #[expect(clippy::struct_field_names, reason = "the unit is part of every name")]
@@ -152,22 +150,13 @@ impl<'a> LossFold<'a> {
 }
 
 /// What became of a road in one tile.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 struct FateRecord {
     ordinal: u32,
     fate: RoadFate,
 }
 
-impl SortRecord for FateRecord {
-    fn encode(&self, bytes: &mut Vec<u8>) {
-        append(bytes, (self.ordinal, self.fate));
-    }
-
-    fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let (ordinal, fate) = take(bytes)?;
-        Some(Self { ordinal, fate })
-    }
-}
+impl SerdeRecord for FateRecord {}
 
 /// Fates by ascending ordinal.
 struct Fates<'a> {

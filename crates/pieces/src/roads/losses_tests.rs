@@ -3,7 +3,8 @@
 use corniche_spec::artifacts::ArtifactError;
 use std::sync::Mutex;
 
-use corniche_store::{MemoryScratch, MemoryStore};
+use corniche_store::MemoryStore;
+use corniche_testing::MemoryScratch;
 use proptest::{collection::vec, prelude::*};
 
 use super::*;

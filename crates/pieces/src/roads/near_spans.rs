@@ -12,14 +12,14 @@ use corniche_spec::{
     Observer,
     artifacts::{self, Kind},
 };
-use corniche_store::{Artifacts, Scratch};
+use corniche_store::{Artifacts, Scratch, record_bytes, take_record};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     ExtractError,
     layers::{
         blocks::{BlockWriter, for_each_block},
-        parts_by_tile::{PartsByTile, part_bytes, part_of_bytes},
+        parts_by_tile::PartsByTile,
     },
 };
 
@@ -166,7 +166,7 @@ impl<'a> NearRoadsWriter<'a> {
             self.of_spans.push((place, road));
             return Ok(());
         }
-        self.others.push(TileId::ROOT, place, part_bytes(&road))
+        self.others.push(TileId::ROOT, place, record_bytes(&road))
     }
 
     /// Counts bridges and tunnels of more ways as reached.
@@ -206,7 +206,7 @@ impl<'a> NearRoadsWriter<'a> {
         others.for_each_tile(
             observer,
             |(): &mut (), _, place, bytes| {
-                let other: NearRoad = part_of_bytes(&bytes).ok_or_else(damaged)?;
+                let other: NearRoad = take_record(&mut &*bytes).ok_or_else(damaged)?;
                 while let Some((_, road)) = of_spans.next_if(|(own, _)| *own < place) {
                     put(road)?;
                 }

@@ -1,6 +1,7 @@
 //! What lies near a bridge is kept: a road that goes on at its end, and one that crosses it, whatever its class.
 
-use corniche_store::{MemoryScratch, MemoryStore};
+use corniche_store::MemoryStore;
+use corniche_testing::MemoryScratch;
 use corniche_work::Silent;
 
 use super::*;

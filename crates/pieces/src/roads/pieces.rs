@@ -6,9 +6,9 @@ use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
 use corniche_spec::artifacts::{ArtifactError, Kind, damaged};
 use corniche_store::Artifacts;
-use corniche_varints::push_varint;
-
-use super::varints::{Take, put_signed, put_text};
+use corniche_varints::{
+    push_bytes, push_signed, push_varint, take_array, take_number, take_signed, take_text,
+};
 
 /// What a tile needs of one road.
 ///
@@ -73,11 +73,11 @@ impl TilePieces {
     /// Reads what `TilePiecesWriter` made; `None` for other bytes.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
-        let mut rest = Take::new(bytes);
+        let mut rest = bytes;
         let mut roads = Vec::new();
         let mut next = 0_u32;
         while !rest.is_empty() {
-            let ordinal = next.checked_add(u32::try_from(rest.unsigned()?).ok()?)?;
+            let ordinal = next.checked_add(take_number(&mut rest)?)?;
             roads.push((ordinal, RoadPiece::take(&mut rest)?));
             next = ordinal.checked_add(1)?;
         }
@@ -113,7 +113,7 @@ impl RoadPiece {
         let Self { way_id, class, attributes, source_points, simplified_points, runs } = self;
         let points: usize = runs.iter().map(|run| run.line.points().len()).sum();
         let mut bytes = Vec::with_capacity(64 + points * 12);
-        put_signed(&mut bytes, *way_id);
+        push_signed(&mut bytes, *way_id);
         bytes.push(class.number());
         put_attributes(&mut bytes, attributes);
         push_varint(&mut bytes, *source_points);
@@ -124,8 +124,8 @@ impl RoadPiece {
             let points = run.line.points();
             push_varint(&mut bytes, points.len() as u64);
             for &point in points {
-                put_signed(&mut bytes, point.u.wrapping_sub(before.u));
-                put_signed(&mut bytes, point.v.wrapping_sub(before.v));
+                push_signed(&mut bytes, point.u.wrapping_sub(before.u));
+                push_signed(&mut bytes, point.v.wrapping_sub(before.v));
                 before = point;
             }
             push_varint(&mut bytes, run.segments_um.len() as u64);
@@ -136,18 +136,18 @@ impl RoadPiece {
             push_varint(&mut bytes, run.nodes.len() as u64);
             for &(index, node_id) in &run.nodes {
                 push_varint(&mut bytes, index.into());
-                put_signed(&mut bytes, node_id);
+                push_signed(&mut bytes, node_id);
             }
         }
         bytes
     }
 
-    fn take(rest: &mut Take<'_>) -> Option<Self> {
-        let way_id = rest.signed()?;
-        let &[class] = rest.bytes(1)? else { return None };
+    fn take(rest: &mut &[u8]) -> Option<Self> {
+        let way_id = take_signed(rest)?;
+        let [class] = take_array(rest)?;
         let attributes = Arc::new(take_attributes(rest)?);
-        let [source_points, simplified_points] = [rest.unsigned()?, rest.unsigned()?];
-        let count = rest.count()?;
+        let [source_points, simplified_points] = [take_number(rest)?, take_number(rest)?];
+        let count = take_count(rest)?;
         let mut before = LatticePoint::new(0, 0);
         let mut runs = Vec::with_capacity(count);
         for _ in 0..count {
@@ -163,35 +163,40 @@ fn put_attributes(bytes: &mut Vec<u8>, attributes: &RoadAttributes) {
     bytes.extend(codes);
     push_varint(bytes, width_mm.into());
     for text in texts {
-        put_text(bytes, text);
+        push_bytes(bytes, text.as_bytes());
     }
 }
 
-fn take_attributes(rest: &mut Take<'_>) -> Option<RoadAttributes> {
-    let codes = rest.bytes(5)?.try_into().ok()?;
-    let width_mm = u32::try_from(rest.unsigned()?).ok()?;
-    RoadAttributes::from_parts(codes, width_mm, || rest.text())
+fn take_attributes(rest: &mut &[u8]) -> Option<RoadAttributes> {
+    let codes = take_array(rest)?;
+    let width_mm = take_number(rest)?;
+    RoadAttributes::from_parts(codes, width_mm, || take_text(rest).map(str::to_owned))
+}
+
+/// How many things follow that take a byte each at least: never more than there are bytes.
+fn take_count(rest: &mut &[u8]) -> Option<usize> {
+    take_number(rest).filter(|count| *count <= rest.len())
 }
 
 impl Run {
-    fn take(rest: &mut Take<'_>, before: &mut LatticePoint) -> Option<Self> {
-        let count = rest.count()?;
+    fn take(rest: &mut &[u8], before: &mut LatticePoint) -> Option<Self> {
+        let count = take_count(rest)?;
         let mut points = Vec::with_capacity(count);
         for _ in 0..count {
-            let [u, v] = [rest.signed()?, rest.signed()?];
+            let [u, v] = [take_signed(rest)?, take_signed(rest)?];
             *before = LatticePoint::new(before.u.wrapping_add(u), before.v.wrapping_add(v));
             points.push(*before);
         }
-        let lengths = rest.count()?;
+        let lengths = take_count(rest)?;
         let mut segments_um = Vec::with_capacity(lengths);
         for _ in 0..lengths {
-            segments_um.push(rest.unsigned()?);
+            segments_um.push(take_number(rest)?);
         }
-        let from_um = rest.unsigned()?;
-        let of_nodes = rest.count()?;
+        let from_um = take_number(rest)?;
+        let of_nodes = take_count(rest)?;
         let mut nodes = Vec::with_capacity(of_nodes);
         for _ in 0..of_nodes {
-            nodes.push((u32::try_from(rest.unsigned()?).ok()?, rest.signed()?));
+            nodes.push((take_number(rest)?, take_signed(rest)?));
         }
         let mut lengths_um = segments_um.iter();
         lengths_um.try_fold(from_um, |sum: u64, length_um| sum.checked_add(*length_um))?;

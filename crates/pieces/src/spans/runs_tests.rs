@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use corniche_geom::{GridFrame, NodeIndex, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, Structure};
-use corniche_store::{MemoryScratch, MemoryStore};
-use corniche_testing::FlatProjection;
+use corniche_store::MemoryStore;
+use corniche_testing::{FlatProjection, MemoryScratch};
 use corniche_work::Silent;
 
 use super::*;

@@ -7,7 +7,7 @@ use std::{path::Path, sync::Arc};
 
 use crate::{
     OpenMode, PlanHash, StoreError, StoredPlan,
-    files::{Files, is_kind},
+    files::Files,
     local::{
         header::{self, FileKind, HEADER_BYTES, u32_at, u64_at},
         layout::{self, Found},
@@ -67,9 +67,7 @@ pub(crate) fn clear_damaged_lock(files: &Arc<Files>, folder: &Path) -> Result<()
 /// Whether the file `store` begins as the header of a store does, of any version.
 fn is_header(files: &Arc<Files>, folder: &Path) -> Result<bool, StoreError> {
     let file = files.open(&folder.join(layout::STORE), OpenMode::Read)?;
-    let mut bytes = vec![0; file.length()?.min(HEADER_BYTES) as usize];
-    file.read_exact_at(&mut bytes, 0)?;
-    Ok(header::begins_as(FileKind::Store, &bytes))
+    Ok(header::begins_as(FileKind::Store, &file.read_start(HEADER_BYTES)?))
 }
 
 /// The content of a store's header, the file `store`.
@@ -147,23 +145,15 @@ pub(crate) fn check_hash(
 pub(crate) fn read_plan(files: &Arc<Files>, folder: &Path) -> Result<StoredPlan, StoreError> {
     let header = read_header(files, folder)?;
     let path = folder.join(layout::PLAN);
-    let bytes = match read_whole(files, &path) {
-        Err(error) if is_kind(&error, std::io::ErrorKind::NotFound) => {
-            return Err(FileKind::Store.damaged(&path, "it is missing"));
-        }
-        bytes => bytes?,
-    };
+    let bytes =
+        read_whole(files, &path)?.ok_or_else(|| FileKind::Store.damaged(&path, "it is missing"))?;
     plan_of_header(&header, bytes, &folder.join(layout::STORE))
 }
 
 /// The content of the header of a folder that must be a store.
 fn read_header(files: &Arc<Files>, folder: &Path) -> Result<Vec<u8>, StoreError> {
-    match read_whole(files, &folder.join(layout::STORE)) {
-        Err(error) if is_kind(&error, std::io::ErrorKind::NotFound) => {
-            Err(StoreError::NoStore { path: folder.to_owned() })
-        }
-        bytes => bytes,
-    }
+    read_whole(files, &folder.join(layout::STORE))?
+        .ok_or_else(|| StoreError::NoStore { path: folder.to_owned() })
 }
 
 /// The plan's hash, length and CRC-32.
@@ -176,9 +166,8 @@ fn decode_header(bytes: &[u8], path: &Path) -> Result<(PlanHash, u64, u32), Stor
     Ok((hash, u64_at(rest, 0), u32_at(rest, 8)))
 }
 
-fn read_whole(files: &Arc<Files>, path: &Path) -> Result<Vec<u8>, StoreError> {
-    let file = files.open(path, OpenMode::Read)?;
-    let mut bytes = vec![0; file.length()? as usize];
-    file.read_exact_at(&mut bytes, 0)?;
-    Ok(bytes)
+/// The content of a file; `None` if it is not there.
+fn read_whole(files: &Arc<Files>, path: &Path) -> Result<Option<Vec<u8>>, StoreError> {
+    let file = files.open_if_there(path, OpenMode::Read)?;
+    file.map(|file| file.read_start(u64::MAX)).transpose()
 }

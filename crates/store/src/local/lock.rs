@@ -8,7 +8,7 @@ use std::{
 };
 
 use crate::{
-    Hold, OpenMode, StoreError,
+    Hold, OpenMode, PartFile as _, StoreError,
     files::{Files, OpenFile, is_kind},
     ids::{Marked, marked, random_digits},
     local::layout,
@@ -67,10 +67,7 @@ pub(crate) fn create_owned(
 
 /// Opens a file if its owner is dead, and becomes its owner. `None` if its owner lives, or the file is gone.
 pub(crate) fn adopt(files: &Arc<Files>, path: &Path) -> Result<Option<OpenFile>, StoreError> {
-    let file = match files.open(path, OpenMode::Change) {
-        Err(error) if is_kind(&error, std::io::ErrorKind::NotFound) => return Ok(None),
-        file => file?,
-    };
+    let Some(file) = files.open_if_there(path, OpenMode::Change)? else { return Ok(None) };
     Ok((file.try_lock(Hold::Alone)? && file.is_in_place()?).then_some(file))
 }
 
@@ -87,13 +84,13 @@ pub(crate) enum Signature {
 
 /// What the lock in a folder says; [`Signature::None`] where it is not there.
 pub(crate) fn signature(files: &Arc<Files>, folder: &Path) -> Result<Signature, StoreError> {
-    match files.open(&folder.join(layout::LOCK), OpenMode::Read) {
-        Err(error) if is_kind(&error, std::io::ErrorKind::NotFound) => Ok(Signature::None),
-        file => match signature_of(&file?) {
-            // Windows lets nobody read what is locked; who holds it has written into it before.
-            Err(_) if cfg!(windows) => Ok(Signature::Store(0)),
-            signature => signature,
-        },
+    let Some(file) = files.open_if_there(&folder.join(layout::LOCK), OpenMode::Read)? else {
+        return Ok(Signature::None);
+    };
+    match signature_of(&file) {
+        // Windows lets nobody read what is locked; who holds it has written into it before.
+        Err(_) if cfg!(windows) => Ok(Signature::Store(0)),
+        signature => signature,
     }
 }
 

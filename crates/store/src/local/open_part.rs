@@ -4,7 +4,7 @@
 //! So what a crash leaves is a journal that is right up to some entry. What follows there is cut off at the next start.
 
 use std::{
-    io, mem,
+    mem,
     path::{Path, PathBuf},
     sync::{
         Arc, Mutex, MutexGuard, OnceLock, PoisonError, RwLock, TryLockError,
@@ -14,8 +14,8 @@ use std::{
 };
 
 use crate::{
-    Key, OpenMode, PlanHash, StoreError,
-    files::{Files, OpenFile, is_kind},
+    Key, OpenMode, PartFile as _, PlanHash, StoreError,
+    files::{Files, OpenFile},
     local::{
         entry::{ENTRY_BYTES, Entry, Visit},
         header::{self, FileKind, HEADER_BYTES},
@@ -110,17 +110,13 @@ impl OpenPart {
         interval: Duration,
         visit: &mut Visit<'_>,
     ) -> Result<Option<(Self, u64)>, StoreError> {
-        let data = match files.open(&layout::data_of_journal(journal.path()), OpenMode::Change) {
-            Err(error) if is_kind(&error, io::ErrorKind::NotFound) => {
-                remove(files, &journal)?;
-                return Ok(None);
-            }
-            data => data?,
+        let data = layout::data_of_journal(journal.path());
+        let Some(data) = files.open_if_there(&data, OpenMode::Change)? else {
+            remove(files, &journal)?;
+            return Ok(None);
         };
         for (file, kind) in [(&journal, FileKind::Journal), (&data, FileKind::Data)] {
-            let mut bytes = vec![0; file.length()?.min(HEADER_BYTES) as usize];
-            file.read_exact_at(&mut bytes, 0)?;
-            header::check(kind, &bytes, file.path(), plan)?;
+            header::check(kind, &file.read_start(HEADER_BYTES)?, file.path(), plan)?;
         }
         let Replayed { entries: journaled, end, dropped } = replay(&journal, &data, visit)?;
         // Durable before anything is added: else an old entry could come back behind a new one.

@@ -5,7 +5,7 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use crate::{Scratch, Span, files::OpenFile};
+use crate::{PartFile as _, Scratch, Span, files::OpenFile};
 
 /// Scratch space in a file of a store, which is removed when this is dropped. What a killed process leaves is removed when its store is opened
 /// the next time.

@@ -23,7 +23,8 @@ use corniche_osm::{
 };
 use corniche_presets::parse_frc_table;
 use corniche_roads::{FrcTable, Road};
-use corniche_store::{MemoryScratch, MemoryStore, Scratch};
+use corniche_store::{MemoryStore, Scratch};
+use corniche_testing::MemoryScratch;
 use rayon::ThreadPool;
 use roads::{check_summary, is_loss_of_way, read_roads, read_roads_from};
 

@@ -1,0 +1,29 @@
+//! Records as bytes, as serde has them: for what a step keeps and reads back.
+
+use serde::{Serialize, de::DeserializeOwned};
+
+/// No record takes so much; damaged bytes may claim a text of any length.
+const MOST_BYTES: usize = 1 << 28;
+
+/// Appends a record to `bytes`.
+pub fn append_record(bytes: &mut Vec<u8>, record: impl Serialize) {
+    // Writing to a list cannot fail, and all that is kept so can be written.
+    let written = bincode::serde::encode_into_std_write(record, bytes, bincode::config::standard());
+    debug_assert!(written.is_ok());
+}
+
+/// A record as bytes.
+#[must_use]
+pub fn record_bytes(record: impl Serialize) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    append_record(&mut bytes, record);
+    bytes
+}
+
+/// Takes from the front of `bytes` what [`append_record`] wrote; `None` where they hold no such record.
+pub fn take_record<T: DeserializeOwned>(bytes: &mut &[u8]) -> Option<T> {
+    let limited = bincode::config::standard().with_limit::<MOST_BYTES>();
+    let (record, used) = bincode::serde::decode_from_slice(bytes, limited).ok()?;
+    *bytes = bytes.get(used..)?;
+    Some(record)
+}
