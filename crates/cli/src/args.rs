@@ -34,7 +34,7 @@ pub(crate) use drawing::{DETAILS, FlyArgs, RenderArgs};
 pub(crate) use export::{
     Export, ExportAreasArgs, ExportBoundariesArgs, ExportEdgesArgs, ExportGeoTiffArgs,
     ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs, InPlanArgs,
-    VectorArgs,
+    MODEL_FORMATS, VECTOR_FORMATS, VectorArgs,
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::{LookArgs, OUTLINES, ROADS, Roads, WIDTH_GROWTHS};

@@ -18,7 +18,7 @@ use crate::{
     info::or_dash,
     messages, packages, presets,
     progress::Progress,
-    recorded::{MEMORY_BYTES, frc_table},
+    recorded::{MEMORY_BYTES, frc_table, no_preset},
     settings::{polygon, threads},
     table::{Digits, Table},
 };
@@ -85,10 +85,7 @@ fn areas(args: &VerifyArgs, package: &FilePackage) -> Result<Option<AreaTable>, 
         (None, Some(recorded)) => {
             let name = &recorded.table;
             if area_preset(name).is_none() {
-                return Err(Failure::unusable(format!(
-                    "{} was made with the table of areas {name:?}, which is no preset; give its file with --areas",
-                    package.path().display()
-                )));
+                return Err(no_preset(package, &format!("table of areas {name:?}"), "--areas"));
             }
             presets::area_table(name).map(Some)
         }

@@ -394,14 +394,14 @@ const HEIGHTS: Words<Coordinates, 1> =
     [("as-is", "The package's heights", Coordinates::Wgs84WithPackageHeights)];
 
 /// Formats of models by the endings of their files.
-const MODEL_FORMATS: Words<MeshFormat, 3> = [
+pub(crate) const MODEL_FORMATS: Words<MeshFormat, 3> = [
     ("glb", "Binary glTF 2.0", MeshFormat::Glb),
     ("ply", "PLY, binary, positions in double precision", MeshFormat::Ply),
     ("obj", "Wavefront OBJ", MeshFormat::Obj),
 ];
 
 /// Formats of features by the endings of their files.
-const VECTOR_FORMATS: Words<VectorFormat, 4> = [
+pub(crate) const VECTOR_FORMATS: Words<VectorFormat, 4> = [
     ("gpkg", "GeoPackage", VectorFormat::GeoPackage),
     ("fgb", "FlatGeobuf", VectorFormat::FlatGeobuf),
     ("geojson", "GeoJSON (RFC 7946)", VectorFormat::GeoJson),
@@ -409,18 +409,19 @@ const VECTOR_FORMATS: Words<VectorFormat, 4> = [
 ];
 
 fn parse_area_class(text: &str) -> Result<AreaClass, String> {
-    AreaClass::from_name(text).ok_or_else(|| other_classes("areas", &AreaClass::ALL))
+    class_named(text, "areas", &AreaClass::ALL)
 }
 
 fn parse_boundary_class(text: &str) -> Result<LineClass, String> {
-    let (layer, classes) = (ClassedLayer::Boundaries, ClassedLayer::Boundaries.classes());
-    let named = classes.iter().copied().find(|class| class.name() == text);
-    named.ok_or_else(|| other_classes(layer.name(), &classes))
+    let layer = ClassedLayer::Boundaries;
+    class_named(text, layer.name(), &layer.classes())
 }
 
-fn other_classes(layer: &str, classes: &[impl ToString]) -> String {
+fn class_named<C: Copy + ToString>(text: &str, layer: &str, classes: &[C]) -> Result<C, String> {
     let names: Vec<String> = classes.iter().map(ToString::to_string).collect();
-    format!("classes of {layer} are {}", names.join(", "))
+    let place = names.iter().position(|name| name == text);
+    let class = place.map(|place| classes[place]);
+    class.ok_or_else(|| format!("classes of {layer} are {}", names.join(", ")))
 }
 
 fn parse_plan_crs(text: &str) -> Result<Coordinates, String> {

@@ -7,7 +7,7 @@ use corniche_remote::PackagePlace;
 
 use super::{
     shared::ClassesArg,
-    values::{package_among, package_place},
+    values::{package_among, package_place, parse_within},
     voice::json_progress,
 };
 use crate::failure::Failure;
@@ -66,6 +66,5 @@ impl MatchArgs {
 
 /// A number of metres from 1 to the most.
 fn metres(text: &str, most: f64) -> Result<f64, String> {
-    let metres = text.parse().ok().filter(|metres| (1.0..=most).contains(metres));
-    metres.ok_or_else(|| format!("write metres from 1 to {most}"))
+    parse_within(text, 1.0..=most, &format!("write metres from 1 to {most}"))
 }

@@ -22,7 +22,7 @@ use plotters::{
     style::text_anchor::{HPos, Pos, VPos},
 };
 
-use crate::chart::in_xml;
+use crate::chart::{ends, in_xml};
 
 const HEIGHT: RGBColor = RGBColor(90, 60, 30);
 const GRADE: RGBColor = RGBColor(200, 30, 40);
@@ -157,12 +157,8 @@ fn grade_line(line: &[(f64, f64)], over_km: f64, all_km: f64) -> Vec<(f64, f64)>
 
 /// What lies between the least and the largest value, with some room; `with` is always seen.
 fn range(curves: &[Curve], with: Option<f64>) -> Range<f64> {
-    let values = || {
-        let values = curves.iter().flat_map(|curve| curve.lines.iter().flatten());
-        values.map(|(_, value)| *value).chain(with)
-    };
-    let [low, high] =
-        [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)];
+    let values = curves.iter().flat_map(|curve| curve.lines.iter().flatten());
+    let [low, high] = ends(values.map(|(_, value)| *value).chain(with));
     if low > high {
         return 0.0..1.0;
     }
