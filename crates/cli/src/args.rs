@@ -50,7 +50,7 @@ pub(crate) use shared::{
     DatumArg, ExtractArgs, FileArgs, FolderArgs, PackageArg, RecordedArgs, ThreadsArg,
 };
 pub(crate) use shell::{CompletionsArgs, ManArgs};
-pub(crate) use values::word_of;
+pub(crate) use values::{package_among, word_of};
 pub(crate) use view::ViewArgs;
 pub(crate) use voice::{LogFormat, Voice};
 

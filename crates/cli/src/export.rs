@@ -21,7 +21,7 @@ use self::vector_files::{coordinates, crs_text, fill, tell};
 use crate::{
     args::{
         Export, ExportAreasArgs, ExportBoundariesArgs, FileArgs, InPlanArgs, VECTOR_FORMATS,
-        word_of,
+        package_among, word_of,
     },
     exit::ExitCode,
     failure::Failure,
@@ -75,7 +75,8 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
 
 fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
     let (plan, layer) = (&args.plan, ClassedLayer::Boundaries);
-    let (place, osm) = args.files()?;
+    let usage = "corniche export boundaries PACKAGE -o FILE --osm FILE…";
+    let (place, [osm]) = package_among(args.package.as_ref(), [&args.extract.osm], usage)?;
     let (package, request) = plan_request((&place, plan), &args.classes, &layer.classes())?;
     let names = recorded::line_names((&args.extract, &osm), layer, (&args.cpu, &package))?;
     let name = format!("{}.{}", layer.name(), word_of(&VECTOR_FORMATS, &request.format));

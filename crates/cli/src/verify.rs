@@ -10,7 +10,7 @@ use corniche_verify::{
 };
 
 use crate::{
-    args::VerifyArgs,
+    args::{VerifyArgs, package_among},
     documents::{to_line, verify::VerifyDocument},
     escaped::in_line,
     exit::ExitCode,
@@ -24,7 +24,9 @@ use crate::{
 };
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
-    let (package, [dem, photo, osm]) = args.files()?;
+    let lists = [&*args.dem, &*args.photo, &*args.osm];
+    let usage = "corniche verify PACKAGE --dem FILE...";
+    let (package, [dem, photo, osm]) = package_among(args.package.as_ref(), lists, usage)?;
     let package = packages::open(&package)?;
     let osm = extract(args, &osm, &package)?;
     let settings = VerifySettings {

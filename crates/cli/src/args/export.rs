@@ -1,7 +1,5 @@
 //! Commands that give what a package holds to other programs.
 
-use std::path::PathBuf;
-
 use clap::{ArgAction, Args, Subcommand, ValueHint};
 use corniche_areas::{AreaClass, ClassedLayer, LineClass};
 use corniche_export::{
@@ -15,11 +13,9 @@ use super::{
         BoundsArg, ClassesArg, DatumArg, ExtractArgs, FileArgs, FolderArgs, LevelArg, PackageArg,
         RecordedArgs, RoadArg, ThreadsArg,
     },
-    values::{package_among, package_place},
+    values::package_place,
     voice::json_progress,
 };
-use crate::failure::Failure;
-
 #[derive(Debug, Subcommand)]
 pub(crate) enum Export {
     /// Write the roads of a package, on its terrain, as lines with lengths and grades for GIS programs
@@ -150,7 +146,7 @@ pub(crate) struct ExportAreasArgs {
 pub(crate) struct ExportBoundariesArgs {
     /// The package: a file, or an address on a web server (https://…)
     #[arg(required_unless_present = "osm", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    package: Option<PackagePlace>,
+    pub(crate) package: Option<PackagePlace>,
     #[command(flatten)]
     pub(crate) plan: InPlanArgs,
     /// Classes that are taken, such as admin-2,admin-8,protected [default: all]
@@ -160,18 +156,6 @@ pub(crate) struct ExportBoundariesArgs {
     pub(crate) extract: ExtractArgs,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
-}
-
-impl ExportBoundariesArgs {
-    /// The package, and the extracts, among which it may be named.
-    ///
-    /// # Errors
-    /// When no package is named, or several may be meant.
-    pub(crate) fn files(&self) -> Result<(PackagePlace, Vec<PathBuf>), Failure> {
-        let usage = "corniche export boundaries PACKAGE -o FILE --osm FILE…";
-        let (package, [osm]) = package_among(self.package.as_ref(), [&self.extract.osm], usage)?;
-        Ok((package, osm))
-    }
 }
 
 #[derive(Debug, Args)]

@@ -58,7 +58,7 @@ fn may_be_package(file: &Path) -> bool {
     is_package_name(file) || !matches!(PackagePlace::parse(file.into()), Ok(PackagePlace::File(_)))
 }
 
-/// The package, and the files of options that take all that follows them, among which it may be if it is not named by itself. `usage` shows how to
+/// The package, and the files of options such as `--dem` that take all that follows them, among which it may be if it is not named by itself. `usage` shows how to
 /// name it.
 ///
 /// # Errors
