@@ -42,7 +42,7 @@ pub(crate) use matching::MatchArgs;
 #[cfg(test)]
 pub(crate) use overlay::parse as overlay;
 pub(crate) use overlay::{OverlayArg, styled as with_overlays};
-pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
+pub(crate) use part::{JobsArgs, MergeArgs, PartArgs, plan_and_stores};
 pub(crate) use profile::ProfileArgs;
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs};
 pub(crate) use serve::ServeArgs;

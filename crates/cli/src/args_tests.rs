@@ -5,6 +5,11 @@ use std::path::{Path, PathBuf};
 use corniche_remote::PackagePlace;
 
 use super::*;
+use crate::failure::Failure;
+
+fn planned(args: &part::PlannedArgs) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
+    plan_and_stores(args.plan.as_ref(), &args.store)
+}
 
 #[test]
 fn the_command_line_is_consistent() {
@@ -152,9 +157,9 @@ fn options_with_several_values_leave_positional_arguments_alone() {
     };
     let files = |arguments: &Arguments| match &arguments.command {
         Command::Profile(args) => measured(&args.recorded, &args.extract.osm),
-        Command::Jobs(args) => args.files().unwrap(),
-        Command::Part(args) => args.planned.files().unwrap(),
-        Command::Merge(args) => args.planned.files().unwrap(),
+        Command::Jobs(args) => plan_and_stores(args.plan.as_ref(), &args.store).unwrap(),
+        Command::Part(args) => planned(&args.planned).unwrap(),
+        Command::Merge(args) => planned(&args.planned).unwrap(),
         Command::Export(what) => match what {
             Export::GeoTiff(args) => measured(&args.from, &[]),
             Export::Roads(args) => measured(&args.vector.from, &args.vector.extract.osm),
@@ -244,7 +249,7 @@ fn a_plan_that_is_not_named_is_missed() {
     let refusal = |line: &str| {
         let arguments = Arguments::try_parse_from(line.split(' ')).unwrap();
         let Command::Part(args) = arguments.command else { panic!("{line}") };
-        args.planned.files().unwrap_err().to_string()
+        planned(&args.planned).unwrap_err().to_string()
     };
     for (names, word) in [
         ("a b", "no plan is named"),

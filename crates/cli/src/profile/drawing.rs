@@ -69,7 +69,7 @@ pub(crate) fn to_svg(found: &Profile, title: &str, facts: &str, credits: &str) -
         draw_panel(&heights, found, above)?;
         draw_names(&names, found)?;
         draw_panel(&grades, found, below)?;
-        let font = style(SMALL_FONT).pos(Pos::new(HPos::Left, VPos::Center));
+        let font = centered(SMALL_FONT, HPos::Left);
         let letters = fitting(WIDTH_PX as i32 - LEFT_PX - MARGIN_PX, SMALL_FONT);
         foot.draw(&Text::new(shortened(credits, letters), (LEFT_PX, FOOT_PX as i32 / 2), font))?;
         whole.present()?;
@@ -195,6 +195,11 @@ fn style(size: i32) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size)).color(&BLACK)
 }
 
+/// The same for a text around the height of its place.
+fn centered(size: i32, at: HPos) -> TextStyle<'static> {
+    style(size).pos(Pos::new(at, VPos::Center))
+}
+
 /// How many letters fit.
 fn fitting(width_px: i32, font: i32) -> usize {
     (f64::from(width_px) / (LETTER * f64::from(font))).max(0.0) as usize
@@ -224,7 +229,7 @@ fn draw_head(
     // What lines and bands mean.
     let (mut x, y) = (LEFT_PX, 68);
     let write = |x: i32, text: &str| -> Result<i32> {
-        let font = style(FONT).pos(Pos::new(HPos::Left, VPos::Center));
+        let font = centered(FONT, HPos::Left);
         area.draw(&Text::new(text.to_owned(), (x, y), font))?;
         Ok(x + (text.chars().count() as f64 * LETTER * f64::from(FONT)) as i32 + 2 * MARGIN_PX)
     };
@@ -319,7 +324,7 @@ fn draw_names(area: &Area<'_>, found: &Profile) -> Result<()> {
         }
         let letters = fitting(to - from - 8, SMALL_FONT);
         if letters >= 4 {
-            let font = style(SMALL_FONT).pos(Pos::new(HPos::Center, VPos::Center));
+            let font = centered(SMALL_FONT, HPos::Center);
             let text = shortened(&name, letters);
             area.draw(&Text::new(text, (i32::midpoint(from, to), middle), font))?;
         }
