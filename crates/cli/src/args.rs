@@ -34,7 +34,7 @@ pub(crate) use drawing::{DETAILS, FlyArgs, RenderArgs};
 pub(crate) use export::{
     Export, ExportAreasArgs, ExportBoundariesArgs, ExportEdgesArgs, ExportGeoTiffArgs,
     ExportMeshArgs, ExportQuantizedMeshArgs, ExportRoadsArgs, ExportTiles3dArgs, InPlanArgs,
-    VectorArgs,
+    MODEL_FORMATS, VECTOR_FORMATS, VectorArgs,
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::{LookArgs, OUTLINES, ROADS, Roads, WIDTH_GROWTHS};
@@ -42,7 +42,7 @@ pub(crate) use matching::MatchArgs;
 #[cfg(test)]
 pub(crate) use overlay::parse as overlay;
 pub(crate) use overlay::{OverlayArg, styled as with_overlays};
-pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
+pub(crate) use part::{JobsArgs, MergeArgs, PartArgs, plan_and_stores};
 pub(crate) use profile::ProfileArgs;
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs};
 pub(crate) use serve::ServeArgs;
@@ -50,7 +50,7 @@ pub(crate) use shared::{
     DatumArg, ExtractArgs, FileArgs, FolderArgs, PackageArg, RecordedArgs, ThreadsArg,
 };
 pub(crate) use shell::{CompletionsArgs, ManArgs};
-pub(crate) use values::word_of;
+pub(crate) use values::{package_among, word_of};
 pub(crate) use view::ViewArgs;
 pub(crate) use voice::{LogFormat, Voice};
 

@@ -5,6 +5,11 @@ use std::path::{Path, PathBuf};
 use corniche_remote::PackagePlace;
 
 use super::*;
+use crate::failure::Failure;
+
+fn planned(args: &part::PlannedArgs) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
+    plan_and_stores(args.plan.as_ref(), &args.store)
+}
 
 #[test]
 fn the_command_line_is_consistent() {
@@ -152,25 +157,28 @@ fn options_with_several_values_leave_positional_arguments_alone() {
     };
     let files = |arguments: &Arguments| match &arguments.command {
         Command::Profile(args) => measured(&args.recorded, &args.extract.osm),
-        Command::Jobs(args) => args.files().unwrap(),
-        Command::Part(args) => args.planned.files().unwrap(),
-        Command::Merge(args) => args.planned.files().unwrap(),
+        Command::Jobs(args) => plan_and_stores(args.plan.as_ref(), &args.store).unwrap(),
+        Command::Part(args) => planned(&args.planned).unwrap(),
+        Command::Merge(args) => planned(&args.planned).unwrap(),
         Command::Export(what) => match what {
             Export::GeoTiff(args) => measured(&args.from, &[]),
             Export::Roads(args) => measured(&args.vector.from, &args.vector.extract.osm),
             Export::Boundaries(args) => {
-                let (package, osm) = args.files().unwrap();
+                let (package, [osm]) =
+                    package_among(args.package.as_ref(), [&args.extract.osm], "").unwrap();
                 (path_of(package), osm)
             }
             Export::Edges(args) => measured(&args.vector.from, &args.vector.extract.osm),
             what => panic!("{what:?} has no files to tell apart"),
         },
         Command::Match(args) => {
-            let (package, photos) = args.files().unwrap();
+            let (package, [photos]) =
+                package_among(args.package.as_ref(), [&args.photo], "").unwrap();
             (path_of(package), photos)
         }
         Command::Verify(args) => {
-            let (package, files) = args.files().unwrap();
+            let lists = [&*args.dem, &*args.photo, &*args.osm];
+            let (package, files) = package_among(args.package.as_ref(), lists, "").unwrap();
             (path_of(package), files.concat())
         }
         _ => panic!("{arguments:?} has no files to tell apart"),
@@ -241,7 +249,7 @@ fn a_plan_that_is_not_named_is_missed() {
     let refusal = |line: &str| {
         let arguments = Arguments::try_parse_from(line.split(' ')).unwrap();
         let Command::Part(args) = arguments.command else { panic!("{line}") };
-        args.planned.files().unwrap_err().to_string()
+        planned(&args.planned).unwrap_err().to_string()
     };
     for (names, word) in [
         ("a b", "no plan is named"),
@@ -261,7 +269,9 @@ fn verify_finds_its_package_wherever_it_is_named() {
         let arguments =
             Arguments::try_parse_from(line.split(' ')).map_err(|error| error.to_string())?;
         let Command::Verify(args) = arguments.command else { panic!("{line}") };
-        let (package, [dem, _, osm]) = args.files().map_err(|failure| failure.to_string())?;
+        let lists = [&*args.dem, &*args.photo, &*args.osm];
+        let found = package_among(args.package.as_ref(), lists, "verify");
+        let (package, [dem, _, osm]) = found.map_err(|failure| failure.to_string())?;
         Ok::<_, String>((path_of(package), dem, osm))
     };
     let expected = Ok(("p.pmtiles".into(), vec!["a.tif".into(), "b.tif".into()], Vec::new()));

@@ -94,6 +94,12 @@ const CHARACTER_PX: i32 = 8;
 const SAMPLE_PX: i32 = 34;
 const MARGIN_PX: i32 = 16;
 
+/// The least and the largest of some values; infinite, the largest below the least, where there are none.
+pub(crate) fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let nothing = [f64::INFINITY, f64::NEG_INFINITY];
+    values.fold(nothing, |[least, most], value| [least.min(value), most.max(value)])
+}
+
 /// The curves as SVG, with their names at the right. A curve without points is in that list as well.
 pub(crate) fn draw(axes: &Axes, curves: &[Curve]) -> Result<String> {
     draw_below_each_other(&[(axes, curves)])

@@ -2,8 +2,11 @@
 
 use std::process;
 
+use serde::Serialize;
+
 /// How the program ends; the numbers are part of its interface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub(crate) enum ExitCode {
     /// The command did all that it was asked to do.
     Done = 0,
@@ -21,17 +24,6 @@ impl ExitCode {
     /// What the system is told.
     pub(crate) const fn number(self) -> u8 {
         self as u8
-    }
-
-    /// Its name for programs.
-    pub(crate) const fn word(self) -> &'static str {
-        match self {
-            Self::Done => "done",
-            Self::Failed => "failed",
-            Self::Unusable => "unusable",
-            Self::Exists => "exists",
-            Self::Interrupted => "interrupted",
-        }
     }
 }
 

@@ -17,12 +17,16 @@ use corniche_remote::PackagePlace;
 use corniche_tileset::{FilePackage, Manifest};
 
 pub(crate) use self::vector_files::MEMORY_BYTES;
-use self::vector_files::{coordinates, crs_text, fill, format, tell};
+use self::vector_files::{coordinates, crs_text, fill, tell};
 use crate::{
-    args::{Export, ExportAreasArgs, ExportBoundariesArgs, FileArgs, InPlanArgs},
+    args::{
+        Export, ExportAreasArgs, ExportBoundariesArgs, FileArgs, InPlanArgs, VECTOR_FORMATS,
+        package_among, word_of,
+    },
     exit::ExitCode,
     failure::Failure,
     messages,
+    names::format_of,
     output::{existing_of, named::NamedOutput},
     packages,
     progress::Progress,
@@ -47,7 +51,7 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
     let plan = &args.plan;
     let (package, request) =
         plan_request((&args.from.package, plan), &args.classes, &AreaClass::ALL)?;
-    let name = format!("areas.{}", request.format.ending());
+    let name = format!("areas.{}", word_of(&VECTOR_FORMATS, &request.format));
     let export =
         |path: &Path, progress: &Progress| export_areas(&package, &request, path, progress);
     let (summary, size) = write(&plan.file, name, args.from.package.name(), export)?;
@@ -71,10 +75,11 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
 
 fn boundaries(args: &ExportBoundariesArgs) -> Result<ExitCode, Failure> {
     let (plan, layer) = (&args.plan, ClassedLayer::Boundaries);
-    let (place, osm) = args.files()?;
+    let usage = "corniche export boundaries PACKAGE -o FILE --osm FILE…";
+    let (place, [osm]) = package_among(args.package.as_ref(), [&args.extract.osm], usage)?;
     let (package, request) = plan_request((&place, plan), &args.classes, &layer.classes())?;
     let names = recorded::line_names((&args.extract, &osm), layer, (&args.cpu, &package))?;
-    let name = format!("{}.{}", layer.name(), request.format.ending());
+    let name = format!("{}.{}", layer.name(), word_of(&VECTOR_FORMATS, &request.format));
     let export = |path: &Path, progress: &Progress| {
         export_lines(&package, (layer, names.as_ref()), &request, path, progress)
     };
@@ -97,7 +102,7 @@ fn plan_request<C: Copy>(
     classes: &[C],
     all: &[C],
 ) -> Result<(FilePackage, FeatureRequest<C>), Failure> {
-    let format = format(args.format, &args.file.output)?;
+    let format = format_of(args.format, &args.file.output, &VECTOR_FORMATS)?;
     let package = packages::open(place)?;
     let request = FeatureRequest {
         format,

@@ -15,7 +15,7 @@ use corniche_serve::ServeError;
 use corniche_spec::{ExtractBoundsError, inputs::InputError};
 use corniche_tileset::{OpenError, ReadError, SourceError};
 use corniche_verify::VerifyError;
-use corniche_viewer::{gpu::GpuError, tiles::LoadTileError};
+use corniche_viewer::{RenderError, ReplayError, gpu::GpuError, tiles::LoadTileError};
 use corniche_window::WindowError;
 
 use crate::exit::ExitCode;
@@ -160,6 +160,10 @@ codes! {
     ReadError { _ => Unusable, }
     GdalFileError { _ => Failed, }
     io::Error { _ => Failed, }
+    // What draws charts, and what writes flights.
+    anyhow::Error { _ => Failed, }
+    ctrlc::Error { _ => Failed, }
+    image::ImageError { _ => Failed, }
 }
 
 /// What a build may fail with fails the same way outside one.
@@ -191,6 +195,25 @@ macro_rules! exports {
 exports! {
     FeaturesError RouteError ProfileError MeshError Tiles3dError QuantizedMeshError RasterError
 }
+
+/// What drawing ends with.
+macro_rules! drawings {
+    ($($error:ident)*) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                let code = match error {
+                    $error::Gpu(error) => return error.into(),
+                    $error::Stopped => return Self::interrupted(),
+                    $error::ReadBack(_) => ExitCode::Failed,
+                    _ => ExitCode::Unusable,
+                };
+                Self::new(code, error)
+            }
+        })*
+    };
+}
+
+drawings! { RenderError ReplayError }
 
 impl From<GpuError> for Failure {
     fn from(error: GpuError) -> Self {

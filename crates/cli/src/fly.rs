@@ -31,7 +31,7 @@ use crate::{
 };
 use corniche_styles::Style;
 use corniche_viewer::{
-    Detail, Lifted, Replay, ReplayError, ReplayOptions, default_flight,
+    Detail, Lifted, Replay, ReplayOptions, default_flight,
     flight::{Flight, WorkingCrs},
     gpu::Gpu,
     tiles::{BlockingPackage, MapPackage as _, Overlays, TileDecoder},
@@ -232,20 +232,6 @@ fn once_each<T: Copy + PartialEq>(given: &[T]) -> Vec<T> {
         .filter(|(k, one)| !given[..*k].contains(one))
         .map(|(_, one)| *one)
         .collect()
-}
-
-impl From<ReplayError> for Failure {
-    fn from(error: ReplayError) -> Self {
-        let code = match error {
-            ReplayError::Gpu(error) => return error.into(),
-            ReplayError::Stopped => {
-                return Self::interrupted();
-            }
-            ReplayError::ReadBack(_) => ExitCode::Failed,
-            _ => ExitCode::Unusable,
-        };
-        Self::new(code, error)
-    }
 }
 
 #[cfg(test)]

@@ -76,11 +76,10 @@ fn write_files(
     let files =
         ReportFiles::begin(args.svg.as_deref(), list, &inputs, existing_of(args.overwrite))?;
     let make_svg = || {
-        let svg = match compared {
-            [one] => chart::growth(one.manifest),
-            several => chart::comparison(several),
-        };
-        svg.map_err(|error| Failure::new(ExitCode::Failed, error))
+        Ok(match compared {
+            [one] => chart::growth(one.manifest)?,
+            several => chart::comparison(several)?,
+        })
     };
     let mut told = None;
     let fill_list = |_, output: Output| {

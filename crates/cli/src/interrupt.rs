@@ -51,8 +51,7 @@ const STOPS_WITHIN: Duration = Duration::from_secs(10);
 
 /// From now on a signal is noted instead of ending the program at once.
 pub(crate) fn watch() -> Result<(), Failure> {
-    ctrlc::set_handler(|| note(Cause::Signal))
-        .map_err(|error| Failure::new(ExitCode::Failed, error))?;
+    ctrlc::set_handler(|| note(Cause::Signal))?;
     spare_from_file_limits()
 }
 
@@ -168,8 +167,7 @@ fn spare_from_file_limits() -> Result<(), Failure> {
         use std::sync::Arc;
         // The handler does nothing: it only replaces the default action, which is to end the program.
         let ignored = Arc::new(AtomicBool::new(false));
-        signal_hook::flag::register(signal_hook::consts::SIGXFSZ, ignored)
-            .map_err(|error| Failure::new(ExitCode::Failed, error))?;
+        signal_hook::flag::register(signal_hook::consts::SIGXFSZ, ignored)?;
     }
     Ok(())
 }

@@ -3,7 +3,12 @@
 use corniche_pipeline::{Job, JobSettings};
 
 use crate::{
-    args::JobsArgs, exit::ExitCode, failure::Failure, messages, part::read_plan, settings,
+    args::{JobsArgs, plan_and_stores},
+    exit::ExitCode,
+    failure::Failure,
+    messages,
+    part::read_plan,
+    settings,
 };
 
 pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
@@ -11,7 +16,7 @@ pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
         let message = format!("--least-work must be from 0 to 1e9 seconds, not {seconds}");
         return Err(Failure::unusable(message));
     }
-    let (plan, stores) = args.files()?;
+    let (plan, stores) = plan_and_stores(args.plan.as_ref(), &args.store)?;
     let jobs = corniche_pipeline::jobs(&JobSettings {
         plan: read_plan(&plan)?,
         stores,

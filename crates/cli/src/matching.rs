@@ -9,7 +9,7 @@ use corniche_matching::{MatchError, MatchRequest, Target, match_roads};
 use corniche_photo::Photos;
 
 use crate::{
-    args::MatchArgs,
+    args::{MatchArgs, package_among},
     exit::ExitCode,
     failure::Failure,
     messages,
@@ -20,7 +20,8 @@ use crate::{
 };
 
 pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
-    let (place, photos) = args.files()?;
+    let usage = "corniche match PACKAGE --photo FILE...";
+    let (place, [photos]) = package_among(args.package.as_ref(), [&args.photo], usage)?;
     let package = packages::open(&place)?;
     let manifest = package.manifest();
     let photos = corniche_spec::inputs::photo_names(&photos)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 use corniche_pipeline::{MergeSettings, is_in_object_storage};
 
 use crate::{
-    args::MergeArgs,
+    args::{MergeArgs, plan_and_stores},
     build,
     exit::ExitCode,
     failure::Failure,
@@ -21,7 +21,7 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
         output::writable(&args.output)?;
     }
     names::refuse_other_than_package(&args.output)?;
-    let (plan_file, stores) = planned.files()?;
+    let (plan_file, stores) = plan_and_stores(planned.plan.as_ref(), &planned.store)?;
     make_tmp(planned.tmp.as_deref())?;
     let plan = read_plan(&plan_file)?;
     let mut others: Vec<&Path> = plan.inputs.iter().map(|input| Path::new(&input.path)).collect();

@@ -133,7 +133,7 @@ pub(crate) fn error(failure: &Failure) {
 pub(crate) fn ended(code: ExitCode, failure: Option<&Failure>) {
     if voice().json_progress {
         let end = EndRecord {
-            result: code.word(),
+            result: code,
             exit_code: code.number(),
             error: failure.map(ToString::to_string),
             seconds: BEGUN.get().map_or(0.0, |begun| begun.elapsed().as_secs_f64()),

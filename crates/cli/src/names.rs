@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use corniche_presets::Words;
+
 use crate::failure::Failure;
 
 /// Refuses names that mean something else than a file to whoever gives them.
@@ -41,12 +43,26 @@ pub(crate) fn refuse_other_than_package(target: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// A file whose name says no format of those with these endings, and none was named.
-pub(crate) fn unknown_ending(output: &Path, endings: &str) -> Failure {
-    Failure::unusable(format!(
-        "the ending of {} says no format; use one of {endings}, or name it with --format",
-        output.display()
-    ))
+/// The format that is named, or that of the ending, in capitals or not. The words of `formats` are their endings.
+pub(crate) fn format_of<T: Copy, const N: usize>(
+    named: Option<T>,
+    output: &Path,
+    formats: &Words<T, N>,
+) -> Result<T, Failure> {
+    let ending = output.extension().unwrap_or_default();
+    let own = formats.iter().find(|(word, ..)| ending.eq_ignore_ascii_case(word));
+    named.or(own.map(|(.., format)| *format)).ok_or_else(|| {
+        let endings = formats.each_ref().map(|(word, ..)| format!(".{word}")).join(", ");
+        Failure::unusable(format!(
+            "the ending of {} says no format; use one of {endings}, or name it with --format",
+            output.display()
+        ))
+    })
+}
+
+/// The name of a file without its folders.
+pub(crate) fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Whether a name ends as those of packages do.

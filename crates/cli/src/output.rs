@@ -144,9 +144,7 @@ pub(crate) fn writable_package(target: &Path) -> Result<PathBuf, Failure> {
 /// A picture's file.
 pub(crate) fn png(picture: &RgbaImage) -> Result<Vec<u8>, Failure> {
     let mut bytes = Cursor::new(Vec::new());
-    picture
-        .write_to(&mut bytes, image::ImageFormat::Png)
-        .map_err(|error| Failure::new(ExitCode::Failed, error))?;
+    picture.write_to(&mut bytes, image::ImageFormat::Png)?;
     Ok(bytes.into_inner())
 }
 

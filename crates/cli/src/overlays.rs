@@ -11,6 +11,7 @@ use crate::{
     args::{LookArgs, OverlayArg},
     failure::Failure,
     messages,
+    names::file_name,
 };
 
 /// Reads the files and lays out their lines for a package. What has no place on it, or is no line, is told.
@@ -61,8 +62,5 @@ fn note(path: &Path, what: &str) {
 
 /// What the files are called.
 pub(crate) fn names(files: &[OverlayArg]) -> Vec<String> {
-    let name = |file: &OverlayArg| {
-        file.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
-    };
-    files.iter().map(name).collect()
+    files.iter().map(|file| file_name(&file.path)).collect()
 }

@@ -7,7 +7,6 @@
 use std::{io, thread};
 
 use crate::{
-    exit::ExitCode,
     failure::Failure,
     interrupt::{self, Cause},
 };
@@ -19,9 +18,6 @@ pub(crate) fn watch() -> Result<(), Failure> {
         let _ = io::copy(&mut io::stdin().lock(), &mut io::sink());
         interrupt::note(Cause::ParentGone);
     };
-    thread::Builder::new()
-        .name("parent".into())
-        .spawn(waiting)
-        .map(drop)
-        .map_err(|error| Failure::new(ExitCode::Failed, error))
+    thread::Builder::new().name("parent".into()).spawn(waiting)?;
+    Ok(())
 }

@@ -7,13 +7,19 @@ use corniche_pipeline::PartSettings;
 use corniche_plan::BuildPlan;
 
 use crate::{
-    args::PartArgs, exit::ExitCode, failure::Failure, messages, presets::refuse_stream,
-    progress::Progress, settings, table::bytes,
+    args::{PartArgs, plan_and_stores},
+    exit::ExitCode,
+    failure::Failure,
+    messages,
+    presets::refuse_stream,
+    progress::Progress,
+    settings,
+    table::bytes,
 };
 
 pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
     let planned = &args.planned;
-    let (plan, stores) = planned.files()?;
+    let (plan, stores) = plan_and_stores(planned.plan.as_ref(), &planned.store)?;
     make_tmp(planned.tmp.as_deref())?;
     let part = PartSettings {
         plan: read_plan(&plan)?,

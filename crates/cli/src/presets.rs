@@ -22,12 +22,8 @@ const MAX_FILE_BYTES: u64 = 2 << 20;
 
 /// The FRC table that is a preset by its name, else a file by its path.
 pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable, Failure> {
-    let text = text_of(name_or_path, frc_preset(name_or_path), |error| {
-        let names = frc_preset_names().collect::<Vec<_>>().join(", ");
-        format!(
-            "--frc-table {name_or_path:?} is neither a preset ({names}) nor a readable file: {error}"
-        )
-    })?;
+    let what = format!("--frc-table {name_or_path:?} is neither a preset");
+    let text = text_of(name_or_path, frc_preset(name_or_path), (&what, frc_preset_names()))?;
     let table = parse_frc_table(&text)
         .map_err(|error| refuse(&format!("FRC table {name_or_path:?}"), &error))?;
     // Of a preset, or of a copy of one, the name says it all.
@@ -35,18 +31,19 @@ pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable, Failure> {
     Ok(if is_known { table } else { table.with_recorded_labels() })
 }
 
-/// The text of a preset, else of a file by its path.
-fn text_of(
+/// The text of a preset, else of a file by its path. A refusal begins with `what`, and names all presets.
+pub(crate) fn text_of(
     path: &str,
     preset: Option<&'static str>,
-    refusal: impl FnOnce(io::Error) -> String,
+    (what, names): (&str, impl Iterator<Item = &'static str>),
 ) -> Result<Cow<'static, str>, Failure> {
-    match preset {
-        Some(text) => Ok(text.into()),
-        None => read_text(Path::new(path))
-            .map(Cow::Owned)
-            .map_err(|error| Failure::unusable(refusal(error))),
+    if let Some(text) = preset {
+        return Ok(text.into());
     }
+    read_text(Path::new(path)).map(Cow::Owned).map_err(|error| {
+        let names = names.collect::<Vec<_>>().join(", ");
+        Failure::unusable(format!("{what} ({names}) nor a readable file: {error}"))
+    })
 }
 
 /// What the roads of each class of a package are called: as it records, else as the table of its name has them.
@@ -57,12 +54,8 @@ pub(crate) fn class_labels(manifest: &Manifest) -> [String; FunctionalRoadClass:
 
 /// The table of areas that is a preset by its name, else a file by its path.
 pub(crate) fn area_table(name_or_path: &str) -> Result<AreaTable, Failure> {
-    let text = text_of(name_or_path, area_preset(name_or_path), |error| {
-        let names = area_preset_names().collect::<Vec<_>>().join(", ");
-        format!(
-            "--areas {name_or_path:?} is neither off nor a preset ({names}) nor a readable file: {error}"
-        )
-    })?;
+    let what = format!("--areas {name_or_path:?} is neither off nor a preset");
+    let text = text_of(name_or_path, area_preset(name_or_path), (&what, area_preset_names()))?;
     parse_area_table(&text).map_err(|error| refuse(&format!("area table {name_or_path:?}"), &error))
 }
 

@@ -14,11 +14,13 @@ use corniche_verify::RecordedElevation;
 
 use crate::{
     args::ProfileArgs,
+    chart::ends,
     documents::{profile::ProfileDocument, to_line},
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
     messages,
+    names::file_name,
     output::{Output, existing_of, report_files::ReportFiles},
     overlays, packages,
     progress::Progress,
@@ -78,8 +80,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
     let title = title(args, &found);
     let make_svg = || {
         let credits = package.manifest().attribution.join(", ");
-        drawing::to_svg(&found, &title, &facts(&found), &credits)
-            .map_err(|error| Failure::new(ExitCode::Failed, error))
+        Ok(drawing::to_svg(&found, &title, &facts(&found), &credits)?)
     };
     let fill_list = |number, output: Output| {
         if number == 0 {
@@ -100,7 +101,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<ExitCode, Failure> {
 /// What a profile is called: a road as it is signed, a file, or else the roads that it follows, each once.
 fn title(args: &ProfileArgs, found: &Profile) -> String {
     if let Some(path) = &args.line {
-        return path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        return file_name(path);
     }
     let mut known = BTreeSet::new();
     let names = found.legs.iter().map(drawing::name_of);
@@ -213,9 +214,7 @@ fn points(found: &Profile) -> impl Iterator<Item = &ProfilePoint> {
 
 /// What a profile is; `has_network` says whether the roads of the extract were at hand.
 fn to_text(found: &Profile, has_network: bool) -> String {
-    let heights = || points(found).map(|point| point.height_m);
-    let [lowest, highest] =
-        [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)];
+    let [lowest, highest] = ends(points(found).map(|point| point.height_m));
     let gaps = match found.parts.len() {
         0 | 1 => String::new(),
         parts => format!(", in {parts} parts with gaps between them"),

@@ -22,13 +22,7 @@ use corniche_work::{Observer, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 use tracing::Span;
 
-use self::{
-    costs::{Cost, Costs},
-    efforts::Efforts,
-    pace::Pace,
-    texts::Reading,
-    usage::Usage,
-};
+use self::{costs::Costs, efforts::Efforts, pace::Pace, texts::Reading, usage::Usage};
 use crate::{
     args::{LogFormat, Voice},
     defects::DefectList,
@@ -101,6 +95,7 @@ struct State {
 }
 
 struct Running {
+    manner: Manner,
     stage: Stage,
     span: Span,
     total: Option<u64>,
@@ -176,7 +171,7 @@ impl Progress {
 
     /// The stage that runs is over.
     pub(crate) fn finish(&self) {
-        self.shared.state().end_running(self.shared.manner);
+        self.shared.state().end_running();
     }
 
     /// Tells what the stages took: as one JSON object, or as a table for people who want the details.
@@ -187,7 +182,7 @@ impl Progress {
         match self.shared.manner {
             Manner::Json => write_line(&to_line(&state.costs.record(wall, &used))),
             Manner::Lines if messages::is_detailed() => {
-                let table = state.costs.to_text(wall, &used, digits());
+                let table = state.costs.to_text(wall, &used, Digits::of_notes());
                 write_line(&format!("\n{}", table.trim_end()));
             }
             Manner::Events => tracing::info!(
@@ -201,11 +196,6 @@ impl Progress {
             Manner::Quiet | Manner::Bars | Manner::Lines => {}
         }
     }
-}
-
-/// How whole numbers are written on standard error.
-fn digits() -> Digits {
-    Digits::of_notes()
 }
 
 impl Drop for Progress {
@@ -241,7 +231,7 @@ impl Shared {
         while !state.is_over {
             state = self.over.wait_timeout(state, TICK).unwrap_or_else(PoisonError::into_inner).0;
             if let Some(running) = &mut state.running {
-                running.tell_if_due(self.manner);
+                running.tell_if_due();
             }
         }
     }
@@ -251,7 +241,7 @@ impl Shared {
         let mut state = self.state();
         if let Some(running) = state.running.as_mut().filter(|running| running.stage == stage) {
             act(running);
-            running.tell_if_due(self.manner);
+            running.tell_if_due();
             running.give_back_if_due();
         }
     }
@@ -260,7 +250,7 @@ impl Shared {
 impl State {
     /// A stage begins, and the one that ran is over.
     fn begin(&mut self, stage: Stage, total: Option<u64>, manner: Manner) {
-        self.end_running(manner);
+        self.end_running();
         let efforts = self.efforts.take().map(|efforts| (efforts, Pace::new()));
         let running = Running { efforts, ..Running::new(stage, total, manner) };
         if manner == Manner::Json {
@@ -269,23 +259,17 @@ impl State {
         self.running = Some(running);
     }
 
-    fn end_running(&mut self, manner: Manner) {
+    fn end_running(&mut self) {
         let Some(running) = self.running.take() else { return };
         let reading = running.read();
         if let Some(bar) = &running.bar {
             bar.finish_and_clear();
         }
-        running.tell(manner, &reading, true);
+        running.tell(&reading, true);
         tracing::debug!(
             parent: &running.span, done = reading.done, seconds = reading.elapsed.as_secs_f64(), "ended"
         );
-        self.costs.add(Cost {
-            stage: reading.stage,
-            done: reading.done,
-            already: reading.already,
-            wall: reading.elapsed,
-            used: reading.used,
-        });
+        self.costs.add(reading);
     }
 }
 
@@ -295,6 +279,7 @@ impl Running {
         let span = tracing::info_span!("stage", id = stage.id());
         tracing::debug!(parent: &span, total, unit = stage.unit().plural(), "begins");
         Self {
+            manner,
             stage,
             span,
             total,
@@ -354,19 +339,19 @@ impl Running {
         }
     }
 
-    fn tell_if_due(&mut self, manner: Manner) {
-        if !manner.is_due(self.told.elapsed(), self.done > self.told_done) {
+    fn tell_if_due(&mut self) {
+        if !self.manner.is_due(self.told.elapsed(), self.done > self.told_done) {
             return;
         }
         (self.told, self.told_done) = (Instant::now(), self.done);
-        self.tell(manner, &self.read(), false);
+        self.tell(&self.read(), false);
     }
 
     /// Tells how far it is, or how it ended.
-    fn tell(&self, manner: Manner, reading: &Reading, is_over: bool) {
+    fn tell(&self, reading: &Reading, is_over: bool) {
         let title = self.stage.title();
         let text = |digits| if is_over { reading.ended(digits) } else { reading.running(digits) };
-        match (manner, &self.bar) {
+        match (self.manner, &self.bar) {
             (Manner::Quiet, _) => {}
             (Manner::Json, _) => {
                 let state = if is_over { "end" } else { "running" };
@@ -386,10 +371,10 @@ impl Running {
                     bar.set_length(total);
                 }
                 bar.set_position(self.done);
-                bar.set_message(text(digits()));
+                bar.set_message(text(Digits::of_notes()));
             }
             (Manner::Bars | Manner::Lines, _) => {
-                write_line(&format!("{title:22} {}", text(digits())));
+                write_line(&format!("{title:22} {}", text(Digits::of_notes())));
             }
         }
     }

@@ -87,10 +87,15 @@ pub(crate) fn frc_table(named: Option<&str>, package: &FilePackage) -> Result<Fr
     }
     let name = &package.manifest().settings.frc_table;
     if frc_preset(name).is_none() {
-        return Err(Failure::unusable(format!(
-            "{} was made with the FRC table {name:?}, which is no preset; give its file with --frc-table",
-            package.path().display()
-        )));
+        return Err(no_preset(package, &format!("FRC table {name:?}"), "--frc-table"));
     }
     presets::frc_table(name)
+}
+
+/// A package was made with a table that does not come with the program.
+pub(crate) fn no_preset(package: &FilePackage, table: &str, option: &str) -> Failure {
+    Failure::unusable(format!(
+        "{} was made with the {table}, which is no preset; give its file with {option}",
+        package.path().display()
+    ))
 }

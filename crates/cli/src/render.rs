@@ -2,15 +2,12 @@
 
 mod picture_files;
 
-use std::path::Path;
-
 use corniche_export::{PictureFacts, PlaceOfPicture};
 use corniche_osm::AreaLoss;
 use corniche_styles::{OwnWidths, Style};
 use corniche_tileset::Manifest;
 use corniche_viewer::{
-    LegendRequest, Mapping, RenderError, RenderReport, RenderRequest, RoadMethod, TitleFlaws,
-    render,
+    LegendRequest, Mapping, RenderReport, RenderRequest, RoadMethod, TitleFlaws, render,
     tiles::{MapPackage as _, TileDecoder},
 };
 
@@ -21,12 +18,7 @@ use crate::{
 };
 
 pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
-    let overlay_files = args.look.overlay.iter().map(|file| &*file.path);
-    let used: Vec<&Path> = [Some(args.from.package.name()), styles::file_of(&args.look.style)]
-        .into_iter()
-        .flatten()
-        .chain(overlay_files)
-        .collect();
+    let used = styles::files_of_look(&args.look, &args.from);
     let style = args.look.styled(styles::style(&args.look.style)?);
     let roads = args.look.roads(&[args.roads])?[0];
     let mapping = match (args.unmapped, roads.method()) {
@@ -144,18 +136,6 @@ fn incomplete_areas(manifest: &Manifest, style: &Style) -> Option<String> {
             noted(objects)
         )
     })
-}
-
-impl From<RenderError> for Failure {
-    fn from(error: RenderError) -> Self {
-        let code = match error {
-            RenderError::Gpu(error) => return error.into(),
-            RenderError::Stopped => return Self::interrupted(),
-            RenderError::ReadBack(_) => ExitCode::Failed,
-            _ => ExitCode::Unusable,
-        };
-        Self::new(code, error)
-    }
 }
 
 #[cfg(test)]

@@ -197,23 +197,13 @@ fn area_table(options: &AreaOptions, osm: &[PathBuf]) -> Result<Option<AreaTable
 
 /// The layers of lines that are wanted.
 fn lines(options: &AreaOptions, osm: &[PathBuf]) -> Result<Vec<ClassedLayer>, Failure> {
-    let mut wanted = Vec::new();
-    for layer in ClassedLayer::ALL {
-        let name = layer.name();
-        let is_wanted = match layer {
-            ClassedLayer::Boundaries => options.boundaries,
-        };
-        match is_wanted {
-            None | Some(false) => {}
-            Some(true) if osm.is_empty() => {
-                return Err(Failure::unusable(format!(
-                    "--{name} takes {name} from an extract; give one with --osm"
-                )));
-            }
-            Some(true) => wanted.push(layer),
-        }
+    let is_wanted = options.boundaries == Some(true);
+    if is_wanted && osm.is_empty() {
+        return Err(Failure::unusable(
+            "--boundaries takes boundaries from an extract; give one with --osm",
+        ));
     }
-    Ok(wanted)
+    Ok(Vec::from_iter(is_wanted.then_some(ClassedLayer::Boundaries)))
 }
 
 fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {

@@ -8,16 +8,16 @@ use std::{
 use corniche_styles::{Style, parse_style, style_preset, style_preset_names};
 
 use crate::{
+    args::{LookArgs, PackageArg},
     failure::Failure,
-    presets::{read_text, refuse},
+    presets::{read_text, refuse, text_of},
 };
 
 /// A style that comes with the program by its name, else a file by its path.
 pub(crate) fn style(name_or_path: &str) -> Result<Style, Failure> {
-    match style_preset(name_or_path) {
-        Some(text) => parse(&format!("style {name_or_path:?}"), text),
-        None => read(Path::new(name_or_path)),
-    }
+    let what = format!("--style {name_or_path} is neither a style that comes along");
+    let text = text_of(name_or_path, style_preset(name_or_path), (&what, style_preset_names()))?;
+    parse(Path::new(name_or_path), &text)
 }
 
 /// The file that `--style` names; `None` for a style that comes with the program.
@@ -25,19 +25,14 @@ pub(crate) fn file_of(name_or_path: &str) -> Option<&Path> {
     style_preset(name_or_path).is_none().then_some(Path::new(name_or_path))
 }
 
-fn read(path: &Path) -> Result<Style, Failure> {
-    let text = read_text(path).map_err(|error| {
-        let names = style_preset_names().collect::<Vec<_>>().join(", ");
-        Failure::unusable(format!(
-            "--style {} is neither a style that comes along ({names}) nor a readable file: {error}",
-            path.display()
-        ))
-    })?;
-    parse(&format!("style {}", path.display()), &text)
+/// The files that a picture is drawn from: the package, the style if it is a file, and overlays.
+pub(crate) fn files_of_look<'a>(look: &'a LookArgs, from: &'a PackageArg) -> Vec<&'a Path> {
+    let overlays = look.overlay.iter().map(|file| &*file.path);
+    [from.package.name()].into_iter().chain(file_of(&look.style)).chain(overlays).collect()
 }
 
-fn parse(what: &str, text: &str) -> Result<Style, Failure> {
-    parse_style(text).map_err(|error| refuse(what, &error))
+fn parse(path: &Path, text: &str) -> Result<Style, Failure> {
+    parse_style(text).map_err(|error| refuse(&format!("style {}", path.display()), &error))
 }
 
 /// The file of a style, which is read again and again while a window shows it.
@@ -70,7 +65,7 @@ impl StyleFile {
             return None;
         }
         let style = match &said {
-            Ok(text) => parse(&format!("style {}", self.path.display()), text),
+            Ok(text) => parse(&self.path, text),
             Err(error) => Err(Failure::unusable(format!("style {}: {error}", self.path.display()))),
         };
         if style.is_err() && doubted.as_ref() != Some(&said) {

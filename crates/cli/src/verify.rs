@@ -10,7 +10,7 @@ use corniche_verify::{
 };
 
 use crate::{
-    args::VerifyArgs,
+    args::{VerifyArgs, package_among},
     documents::{to_line, verify::VerifyDocument},
     escaped::in_line,
     exit::ExitCode,
@@ -18,13 +18,15 @@ use crate::{
     info::or_dash,
     messages, packages, presets,
     progress::Progress,
-    recorded::{MEMORY_BYTES, frc_table},
+    recorded::{MEMORY_BYTES, frc_table, no_preset},
     settings::{polygon, threads},
     table::{Digits, Table},
 };
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
-    let (package, [dem, photo, osm]) = args.files()?;
+    let lists = [&*args.dem, &*args.photo, &*args.osm];
+    let usage = "corniche verify PACKAGE --dem FILE...";
+    let (package, [dem, photo, osm]) = package_among(args.package.as_ref(), lists, usage)?;
     let package = packages::open(&package)?;
     let osm = extract(args, &osm, &package)?;
     let settings = VerifySettings {
@@ -85,10 +87,7 @@ fn areas(args: &VerifyArgs, package: &FilePackage) -> Result<Option<AreaTable>, 
         (None, Some(recorded)) => {
             let name = &recorded.table;
             if area_preset(name).is_none() {
-                return Err(Failure::unusable(format!(
-                    "{} was made with the table of areas {name:?}, which is no preset; give its file with --areas",
-                    package.path().display()
-                )));
+                return Err(no_preset(package, &format!("table of areas {name:?}"), "--areas"));
             }
             presets::area_table(name).map(Some)
         }

@@ -21,7 +21,7 @@ use crate::{
     interrupt, messages,
     output::{Existing, Output},
     overlays, packages, presets,
-    styles::{StyleFile, file_of, style},
+    styles::{StyleFile, files_of_look, style},
     view_command::command_of,
 };
 
@@ -32,8 +32,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         styles.push(NamedStyle { name: name.to_owned(), style: style(name)? });
     }
     let roads = args.look.roads(&[args.roads.unwrap_or(Roads::DEFAULT)])?[0];
-    let own = [Some(args.from.package.name()), file_of(chosen)].into_iter().flatten();
-    let used: Vec<&Path> = own.chain(args.look.overlay.iter().map(|file| &*file.path)).collect();
+    let used = files_of_look(&args.look, &args.from);
     let trace = args.trace.as_deref().map(|path| begin_trace(path, &used)).transpose()?;
     if args.folder.exists() && !args.folder.is_dir() {
         return Err(Failure::unusable(format!(

@@ -102,6 +102,17 @@ struct Ground {
     rates: Rates,
 }
 
+/// What the ground of all levels takes.
+#[derive(Clone, Copy)]
+struct GroundCosts {
+    package_bytes: f64,
+    /// What is kept of it beside what goes into the package.
+    store_bytes: f64,
+    /// Time of all steps, on one core.
+    core_seconds: f64,
+    rates: Rates,
+}
+
 impl Estimate {
     /// What a build of `opened` will take. Where the data are many, some of their tiles are read.
     ///
@@ -148,7 +159,8 @@ impl Estimate {
         if !opened.grid.nodes_are_samples() {
             ground.core_seconds += rates::SECONDS_PER_RESAMPLED_NODE * nodes as f64;
         }
-        let estimate = Self::put_together(nodes, tiles, memory, extract_bytes, &ground);
+        let costs = ground.costs(nodes, &tiles);
+        let estimate = Self::put_together(nodes, tiles, memory, extract_bytes, costs);
         Ok(estimate.with_relief(opened.relief).with_photos(opened))
     }
 
@@ -201,24 +213,13 @@ impl Estimate {
             [of_levels(|level| level.triangles), of_levels(|level| level.terrain_bytes)];
         let relief_bytes =
             if relief == ReliefLevels::Off { 0 } else { of_levels(|level| level.relief_bytes) };
-        let extract = extract_bytes as f64;
-        let package =
-            (terrain_bytes + relief_bytes) as f64 + rates::ROADS_PER_EXTRACT_BYTE * extract;
-        let records = all * (rates::RECORD_BYTES + 3 * rates::ARTIFACT_BYTES);
-        let pieces = rates::PIECES_PER_EXTRACT_BYTE * extract;
-        let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
-        let core_seconds = rates::SECONDS_PER_RECORDED_TRIANGLE * triangles as f64
-            + rates::SECONDS_PER_EXTRACT_BYTE * extract;
-        Self {
-            nodes: manifest.counts.samples.nodes,
-            tiles,
-            store_bytes: (records as f64 + package + pieces).max(while_sorted).ceil() as u64,
-            package_bytes: package.ceil() as u64,
-            core_seconds,
-            seconds: core_seconds / memory.cores(),
-            memory,
+        let costs = GroundCosts {
+            package_bytes: (terrain_bytes + relief_bytes) as f64,
+            store_bytes: (all * (rates::RECORD_BYTES + 3 * rates::ARTIFACT_BYTES)) as f64,
+            core_seconds: rates::SECONDS_PER_RECORDED_TRIANGLE * triangles as f64,
             rates: Rates::Recorded,
-        }
+        };
+        Self::put_together(manifest.counts.samples.nodes, tiles, memory, extract_bytes, costs)
     }
 
     /// The same with the reliefs of these levels.
@@ -233,29 +234,20 @@ impl Estimate {
         self
     }
 
+    /// What the ground takes, with what the extract takes.
     fn put_together(
         nodes: u64,
         tiles: Vec<u64>,
         memory: MemoryEstimate,
         extract_bytes: u64,
-        ground: &Ground,
+        ground: GroundCosts,
     ) -> Self {
-        let all: u64 = tiles.iter().sum();
-        let finest = tiles.last().copied().unwrap_or(0);
-        let coarse = all - finest;
         let extract = extract_bytes as f64;
-        let finest_triangles = ground.triangles_per_node * nodes as f64;
-        let all_triangles = rates::ALL_PER_FINEST * finest_triangles;
-        let grounds = all_triangles * rates::payload_bytes_per_triangle(ground.triangles_per_node);
-        let package = grounds + rates::ROADS_PER_EXTRACT_BYTE * extract;
-        let fixed = finest * rates::HEIGHTS_BYTES
-            + coarse * rates::RASTER_BYTES
-            + all * (rates::RECORD_BYTES + rates::TILE_ARTIFACTS * rates::ARTIFACT_BYTES);
-        let coarse_tins = (all_triangles - finest_triangles) * rates::TIN_BYTES_PER_TRIANGLE;
+        let package = ground.package_bytes + rates::ROADS_PER_EXTRACT_BYTE * extract;
         // What is sorted is gone before heights come.
         let pieces = rates::PIECES_PER_EXTRACT_BYTE * extract;
         let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
-        let store = (fixed as f64 + coarse_tins + package + pieces).max(while_sorted);
+        let store = (ground.store_bytes + package + pieces).max(while_sorted);
         let core_seconds = ground.core_seconds + rates::SECONDS_PER_EXTRACT_BYTE * extract;
         Self {
             nodes,
@@ -318,6 +310,25 @@ impl MemoryEstimate {
 }
 
 impl Ground {
+    /// What it takes on so many tiles of each level.
+    fn costs(&self, nodes: u64, tiles: &[u64]) -> GroundCosts {
+        let all: u64 = tiles.iter().sum();
+        let finest = tiles.last().copied().unwrap_or(0);
+        let finest_triangles = self.triangles_per_node * nodes as f64;
+        let all_triangles = rates::ALL_PER_FINEST * finest_triangles;
+        let fixed = finest * rates::HEIGHTS_BYTES
+            + (all - finest) * rates::RASTER_BYTES
+            + all * (rates::RECORD_BYTES + rates::TILE_ARTIFACTS * rates::ARTIFACT_BYTES);
+        let coarse_tins = (all_triangles - finest_triangles) * rates::TIN_BYTES_PER_TRIANGLE;
+        let triangle_bytes = rates::payload_bytes_per_triangle(self.triangles_per_node);
+        GroundCosts {
+            package_bytes: all_triangles * triangle_bytes,
+            store_bytes: fixed as f64 + coarse_tins,
+            core_seconds: self.core_seconds,
+            rates: self.rates,
+        }
+    }
+
     /// `tolerance_cells` is the tolerance as a share of the cell.
     fn recorded(nodes: u64, tolerance_cells: f64) -> Self {
         let triangles_per_node = rates::triangles_per_node(tolerance_cells);

@@ -17,7 +17,8 @@ pub(crate) fn file(size: [u64; 2], block: [u64; 2], file_bytes: u64) -> FileBloc
 pub(crate) fn estimate(tiles: Vec<u64>, files: &[FileBlocks], threads: u64) -> Estimate {
     let memory = MemoryEstimate::new(files, tiles.iter().sum(), threads);
     let nodes = tiles.last().copied().unwrap_or(0) << 16;
-    Estimate::put_together(nodes, tiles, memory, 0, &Ground::recorded(nodes, 0.25))
+    let costs = Ground::recorded(nodes, 0.25).costs(nodes, &tiles);
+    Estimate::put_together(nodes, tiles, memory, 0, costs)
 }
 
 #[test]
@@ -60,7 +61,8 @@ fn four_times_the_tiles_take_four_times_the_disk() {
 fn the_extract_takes_disk_too() {
     let memory = || MemoryEstimate::new(&[], 1, 2);
     let put = |extract_bytes| {
-        Estimate::put_together(1, vec![1], memory(), extract_bytes, &Ground::recorded(1, 0.25))
+        let costs = Ground::recorded(1, 0.25).costs(1, &[1]);
+        Estimate::put_together(1, vec![1], memory(), extract_bytes, costs)
     };
     let extract = 1_u64 << 30;
     assert!(put(extract).store_bytes > put(0).store_bytes + extract);
@@ -83,7 +85,8 @@ fn recorded_rates_fit_what_they_were_taken_from() {
         let all = ground.triangles_per_node * nodes as f64 * rates::ALL_PER_FINEST;
         assert!((0.75..1.35).contains(&(all / triangles)), "{name}: {all}");
         let memory = MemoryEstimate::new(&[], 39, 1);
-        let package = Estimate::put_together(nodes, vec![39], memory, 0, &ground).package_bytes;
+        let costs = ground.costs(nodes, &[39]);
+        let package = Estimate::put_together(nodes, vec![39], memory, 0, costs).package_bytes;
         assert!((0.75..1.35).contains(&(package as f64 / bytes)), "{name}: {package}");
     }
 }

@@ -64,44 +64,40 @@ impl Opened {
             None => Self::plan(settings),
         };
         let checked = planned.and_then(|planned| {
+            let projection = planned.source.projection(&planned.grid)?;
             let mut file_datums = FileDatums::default();
             if let Some(polygon) = &settings.terrain.plan.polygon {
                 let found = planned.grid.datums_of_polygon(polygon);
                 file_datums.extend(found.allowed(settings.terrain.allow_ballpark)?);
             }
-            Ok((planned, file_datums))
+            Ok((planned, projection, file_datums))
         });
-        match checked {
-            Ok((planned, mut file_datums)) => {
-                let Planned { source, grid, levels, max_error_m, coordinates, projection } =
-                    planned;
-                if let GroundSource::Dem(dem) = &source {
-                    inputs.use_only(&dem.needed_files(&grid)?);
-                }
-                let allow_ballpark = settings.terrain.allow_ballpark;
-                let photo = PhotoSource::open(&settings.photo, allow_ballpark, &source, &grid);
-                let photo =
-                    photo.map_err(|error| inputs.changed_instead_of(PlanError::from(error)))?;
-                if let Some(photos) = photo.files() {
-                    file_datums.extend(photos.datums.clone());
-                }
-                let relief = settings.terrain.relief;
-                Ok(Self {
-                    inputs,
-                    source,
-                    grid,
-                    levels,
-                    max_error_m,
-                    coordinates,
-                    projection,
-                    photo,
-                    relief,
-                    file_datums,
-                })
-            }
-            // A changed input may be the cause of any other error, so it is reported instead.
-            Err(error) => Err(inputs.changed_instead_of(error)),
+        // A changed input may be the cause of any other error, so it is reported instead.
+        let checked = checked.map_err(|error| inputs.changed_instead_of(error));
+        let (Planned { source, grid, max_error_m, coordinates }, projection, mut file_datums) =
+            checked?;
+        if let GroundSource::Dem(dem) = &source {
+            inputs.use_only(&dem.needed_files(&grid)?);
         }
+        let allow_ballpark = settings.terrain.allow_ballpark;
+        let photo = PhotoSource::open(&settings.photo, allow_ballpark, &source, &grid)
+            .map_err(|error| inputs.changed_instead_of(PlanError::from(error)))?;
+        if let Some(photos) = photo.files() {
+            file_datums.extend(photos.datums.clone());
+        }
+        let widest = most_scale(grid.scale.largest);
+        Ok(Self {
+            inputs,
+            levels: Levels::new(grid.frame, max_error_m, &settings.roads, widest),
+            source,
+            grid,
+            max_error_m,
+            coordinates,
+            projection,
+            photo,
+            relief: settings.terrain.relief,
+            file_datums,
+        })
     }
 
     /// Size of the extract; 0 without one.
@@ -132,13 +128,9 @@ impl Opened {
             dem.refuse_oversampling(&grid)?;
         }
         let max_error_m = max_error_m(terrain, &grid)?;
-        let widest = most_scale(grid.scale.largest);
-        let levels = Levels::new(grid.frame, max_error_m, &settings.roads, widest);
         // This fails for files that are too far apart for one package.
         let coordinates = coordinates(&dem, &grid)?;
-        let source = GroundSource::Dem(Box::new(dem));
-        let projection = source.projection(&grid)?;
-        Ok(Planned { source, grid, levels, max_error_m, coordinates, projection })
+        Ok(Planned { source: GroundSource::Dem(Box::new(dem)), grid, max_error_m, coordinates })
     }
 
     /// What follows from a package whose terrain is taken.
@@ -153,9 +145,8 @@ impl Opened {
             let differences = differences.join("; ");
             return Err(TerrainError::Other { path: package.to_path_buf(), differences }.into());
         }
-        let widest = most_scale(manifest.scale.largest);
-        let levels = Levels::new(manifest.frame, max_error_m, &settings.roads, widest);
-        if levels.quantum_m().to_bits() != manifest.vertical.quantum_m.to_bits() {
+        let quantum_m = corniche_tin::height_quantum_m(max_error_m);
+        if quantum_m.to_bits() != manifest.vertical.quantum_m.to_bits() {
             return Err(terrain.damaged("its step of heights does not fit its settings").into());
         }
         let coordinates = manifest.coordinates.clone();
@@ -164,8 +155,7 @@ impl Opened {
             grid = grid.within(polygon)?;
         }
         let source = GroundSource::Package(Box::new(terrain));
-        let projection = source.projection(&grid)?;
-        Ok(Planned { source, grid, levels, max_error_m, coordinates, projection })
+        Ok(Planned { source, grid, max_error_m, coordinates })
     }
 }
 
@@ -173,10 +163,8 @@ impl Opened {
 struct Planned {
     source: GroundSource,
     grid: GridPlan,
-    levels: Levels,
     max_error_m: f64,
     coordinates: CoordinateTable,
-    projection: DemProjection,
 }
 
 /// The tolerance of the finest level: given, or derived from the cell.

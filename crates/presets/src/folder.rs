@@ -21,16 +21,15 @@ impl Config {
         for path in files.chain(written) {
             *path = within(folder, path);
         }
-        if let Some(table) = roads.frc_table.as_mut().filter(|table| frc_preset(table).is_none())
-            && let Some(path) = within(folder, Path::new(table)).to_str()
-        {
-            path.clone_into(table);
-        }
         let is_name = |table: &&mut String| *table == "off" || area_preset(table).is_some();
-        if let Some(table) = areas.table.as_mut().filter(|table| !is_name(table))
-            && let Some(path) = within(folder, Path::new(table)).to_str()
-        {
-            path.clone_into(table);
+        let tables = [
+            roads.frc_table.as_mut().filter(|table| frc_preset(table).is_none()),
+            areas.table.as_mut().filter(|table| !is_name(table)),
+        ];
+        for table in tables.into_iter().flatten() {
+            if let Some(path) = within(folder, Path::new(table)).to_str() {
+                path.clone_into(table);
+            }
         }
         self
     }

@@ -32,7 +32,7 @@ pub enum ExtractBoundsError {
 pub fn extract_bounds(extracts: &[PathBuf]) -> Result<[f64; 4], ExtractBoundsError> {
     let mut boxes = Vec::new();
     for path in extracts {
-        let found = corniche_osm::header_bounds_deg(path).map_err(ExtractBoundsError::Osm)?;
+        let found = corniche_osm::header_bounds_deg(path)?;
         boxes.push(found.ok_or_else(|| ExtractBoundsError::NoBox { osm: path.clone() })?);
     }
     Ok(with_margin(around(&boxes)))

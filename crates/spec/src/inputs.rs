@@ -60,10 +60,6 @@ enum Content {
     Folder,
 }
 
-fn setting(what: String) -> InputError {
-    InputError::Setting { what }
-}
-
 impl Inputs {
     /// Finds all files and notes what they are, before anything of them is read for use.
     ///
@@ -71,7 +67,7 @@ impl Inputs {
     /// See [`InputError`].
     pub fn find(dem: &[PathBuf], others: OtherInputs<'_>) -> Result<Self, InputError> {
         let named = dem.iter().map(PathBuf::as_path).chain(others.named());
-        reach_servers(named).map_err(setting)?;
+        reach_servers(named)?;
         let mut files: Vec<Input> = Vec::new();
         add_rasters(dem, [InputKind::Dem, InputKind::DemPart], &mut files)?;
         others.add_to(&mut files)?;
@@ -83,7 +79,7 @@ impl Inputs {
     /// # Errors
     /// See [`InputError`].
     pub fn find_with_package(package: &Path, others: OtherInputs<'_>) -> Result<Self, InputError> {
-        reach_servers(others.named()).map_err(setting)?;
+        reach_servers(others.named())?;
         let mut files = vec![Input::new(InputKind::Terrain, package)?];
         others.add_to(&mut files)?;
         Ok(Self { files })

@@ -1,7 +1,5 @@
 //! Commands that give what a package holds to other programs.
 
-use std::path::PathBuf;
-
 use clap::{ArgAction, Args, Subcommand, ValueHint};
 use corniche_areas::{AreaClass, ClassedLayer, LineClass};
 use corniche_export::{
@@ -15,11 +13,9 @@ use super::{
         BoundsArg, ClassesArg, DatumArg, ExtractArgs, FileArgs, FolderArgs, LevelArg, PackageArg,
         RecordedArgs, RoadArg, ThreadsArg,
     },
-    values::{package_among, package_place},
+    values::package_place,
     voice::json_progress,
 };
-use crate::failure::Failure;
-
 #[derive(Debug, Subcommand)]
 pub(crate) enum Export {
     /// Write the roads of a package, on its terrain, as lines with lengths and grades for GIS programs
@@ -150,7 +146,7 @@ pub(crate) struct ExportAreasArgs {
 pub(crate) struct ExportBoundariesArgs {
     /// The package: a file, or an address on a web server (https://…)
     #[arg(required_unless_present = "osm", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    package: Option<PackagePlace>,
+    pub(crate) package: Option<PackagePlace>,
     #[command(flatten)]
     pub(crate) plan: InPlanArgs,
     /// Classes that are taken, such as admin-2,admin-8,protected [default: all]
@@ -160,18 +156,6 @@ pub(crate) struct ExportBoundariesArgs {
     pub(crate) extract: ExtractArgs,
     #[command(flatten)]
     pub(crate) cpu: ThreadsArg,
-}
-
-impl ExportBoundariesArgs {
-    /// The package, and the extracts, among which it may be named.
-    ///
-    /// # Errors
-    /// When no package is named, or several may be meant.
-    pub(crate) fn files(&self) -> Result<(PackagePlace, Vec<PathBuf>), Failure> {
-        let usage = "corniche export boundaries PACKAGE -o FILE --osm FILE…";
-        let (package, [osm]) = package_among(self.package.as_ref(), [&self.extract.osm], usage)?;
-        Ok((package, osm))
-    }
 }
 
 #[derive(Debug, Args)]
@@ -394,14 +378,14 @@ const HEIGHTS: Words<Coordinates, 1> =
     [("as-is", "The package's heights", Coordinates::Wgs84WithPackageHeights)];
 
 /// Formats of models by the endings of their files.
-const MODEL_FORMATS: Words<MeshFormat, 3> = [
+pub(crate) const MODEL_FORMATS: Words<MeshFormat, 3> = [
     ("glb", "Binary glTF 2.0", MeshFormat::Glb),
     ("ply", "PLY, binary, positions in double precision", MeshFormat::Ply),
     ("obj", "Wavefront OBJ", MeshFormat::Obj),
 ];
 
 /// Formats of features by the endings of their files.
-const VECTOR_FORMATS: Words<VectorFormat, 4> = [
+pub(crate) const VECTOR_FORMATS: Words<VectorFormat, 4> = [
     ("gpkg", "GeoPackage", VectorFormat::GeoPackage),
     ("fgb", "FlatGeobuf", VectorFormat::FlatGeobuf),
     ("geojson", "GeoJSON (RFC 7946)", VectorFormat::GeoJson),
@@ -409,18 +393,19 @@ const VECTOR_FORMATS: Words<VectorFormat, 4> = [
 ];
 
 fn parse_area_class(text: &str) -> Result<AreaClass, String> {
-    AreaClass::from_name(text).ok_or_else(|| other_classes("areas", &AreaClass::ALL))
+    class_named(text, "areas", &AreaClass::ALL)
 }
 
 fn parse_boundary_class(text: &str) -> Result<LineClass, String> {
-    let (layer, classes) = (ClassedLayer::Boundaries, ClassedLayer::Boundaries.classes());
-    let named = classes.iter().copied().find(|class| class.name() == text);
-    named.ok_or_else(|| other_classes(layer.name(), &classes))
+    let layer = ClassedLayer::Boundaries;
+    class_named(text, layer.name(), &layer.classes())
 }
 
-fn other_classes(layer: &str, classes: &[impl ToString]) -> String {
+fn class_named<C: Copy + ToString>(text: &str, layer: &str, classes: &[C]) -> Result<C, String> {
     let names: Vec<String> = classes.iter().map(ToString::to_string).collect();
-    format!("classes of {layer} are {}", names.join(", "))
+    let place = names.iter().position(|name| name == text);
+    let class = place.map(|place| classes[place]);
+    class.ok_or_else(|| format!("classes of {layer} are {}", names.join(", ")))
 }
 
 fn parse_plan_crs(text: &str) -> Result<Coordinates, String> {

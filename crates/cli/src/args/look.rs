@@ -9,7 +9,7 @@ use corniche_viewer::{
 
 use super::{
     overlay::{self, OverlayArg},
-    values::word_of,
+    values::{parse_within, word_of},
 };
 use crate::failure::Failure;
 
@@ -163,10 +163,8 @@ pub(crate) struct LookArgs {
 
 /// A share from 0 to 1; `off` is 0.
 fn parse_strength(text: &str) -> Result<f32, String> {
-    let share = if text == "off" { Some(0.0) } else { text.parse().ok() };
-    share
-        .filter(|share| (0.0..=1.0).contains(share))
-        .ok_or_else(|| "write off, or a number from 0 to 1".to_owned())
+    let share = if text == "off" { "0" } else { text };
+    parse_within(share, 0.0..=1.0, "write off, or a number from 0 to 1")
 }
 
 impl LookArgs {

@@ -7,11 +7,9 @@ use corniche_remote::PackagePlace;
 
 use super::{
     shared::ClassesArg,
-    values::{package_among, package_place},
+    values::{package_place, parse_within},
     voice::json_progress,
 };
-use crate::failure::Failure;
-
 #[derive(Debug, Args)]
 #[command(
     arg = json_progress(),
@@ -23,10 +21,10 @@ use crate::failure::Failure;
 pub(crate) struct MatchArgs {
     /// The package: a file, or an address on a web server (https://…)
     #[arg(required_unless_present = "photo", value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    package: Option<PackagePlace>,
+    pub(crate) package: Option<PackagePlace>,
     /// Photos of the ground that roads are compared with, as for build --photo: any format and CRS that GDAL reads; the first lies on top
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    photo: Vec<PathBuf>,
+    pub(crate) photo: Vec<PathBuf>,
     /// Take the datum of photos for that of the package where PROJ knows nothing between them; photos can then lie 100 m and more beside it
     #[arg(long, requires = "photo")]
     pub(crate) allow_ballpark: bool,
@@ -52,20 +50,7 @@ pub(crate) struct MatchArgs {
     pub(crate) overwrite: bool,
 }
 
-impl MatchArgs {
-    /// The package and the photos. `--photo` takes all that follows it, also a package, which is told from other files by its name.
-    ///
-    /// # Errors
-    /// When no package is named, or several may be meant.
-    pub(crate) fn files(&self) -> Result<(PackagePlace, Vec<PathBuf>), Failure> {
-        let usage = "corniche match PACKAGE --photo FILE...";
-        let (package, [photo]) = package_among(self.package.as_ref(), [&self.photo], usage)?;
-        Ok((package, photo))
-    }
-}
-
 /// A number of metres from 1 to the most.
 fn metres(text: &str, most: f64) -> Result<f64, String> {
-    let metres = text.parse().ok().filter(|metres| (1.0..=most).contains(metres));
-    metres.ok_or_else(|| format!("write metres from 1 to {most}"))
+    parse_within(text, 1.0..=most, &format!("write metres from 1 to {most}"))
 }

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use corniche_styles::{Dash, LineStyle, Rgb, Style, parse_color};
 
+use super::values::parse_within;
+
 /// A file of lines that are drawn over the map. Its text is the file's name, and after it, if wanted, `,color=COLOUR`, `,width=PX`,
 /// `,opacity=SHARE` and `,dash=DASH/GAP` or `,pattern=NAME/PX` in any order.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,8 +62,8 @@ pub(crate) fn parse(text: &str) -> Result<OverlayArg, String> {
         && is_entry(name)
     {
         let number = |range: std::ops::RangeInclusive<f32>| {
-            let value = value.parse().ok().filter(|number| range.contains(number));
-            value.ok_or_else(|| format!("{name} must be {} to {}", range.start(), range.end()))
+            let advice = format!("{name} must be {} to {}", range.start(), range.end());
+            parse_within(value, range, &advice)
         };
         if given.contains(&name) {
             return Err(format!("{name} is given twice"));

@@ -37,10 +37,10 @@ fn step() -> impl TypedValueParser<Value = Step> {
 pub(crate) struct PlannedArgs {
     /// The plan, made with corniche plan -o
     #[arg(value_name = "PLAN.json")]
-    plan: Option<PathBuf>,
+    pub(crate) plan: Option<PathBuf>,
     /// Folders with parts, or prefixes in object storage (`s3://BUCKET/PREFIX`). All are read; the first is also written
     #[arg(long, value_name = "FOLDER", num_args = 1.., required = true)]
-    store: Vec<PathBuf>,
+    pub(crate) store: Vec<PathBuf>,
     /// With object storage: where a part or a package is made before it is sent [default: the system's temporary folder]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) tmp: Option<PathBuf>,
@@ -51,18 +51,11 @@ pub(crate) struct PlannedArgs {
     pub(crate) memory: Option<String>,
 }
 
-impl PlannedArgs {
-    /// The plan and the stores.
-    ///
-    /// # Errors
-    /// When no plan is named, or several may be meant.
-    pub(crate) fn files(&self) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
-        plan_and_stores(self.plan.as_ref(), &self.store)
-    }
-}
-
 /// The plan and the stores. `--store` takes all that follows it, also a plan, which is told from stores by its name.
-fn plan_and_stores(
+///
+/// # Errors
+/// When no plan is named, or several may be meant.
+pub(crate) fn plan_and_stores(
     plan: Option<&PathBuf>,
     store: &[PathBuf],
 ) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
@@ -107,27 +100,17 @@ pub(crate) struct PartArgs {
 pub(crate) struct JobsArgs {
     /// The plan, made with corniche plan -o
     #[arg(value_name = "PLAN.json", required_unless_present = "store")]
-    plan: Option<PathBuf>,
+    pub(crate) plan: Option<PathBuf>,
     /// How many processes will work at once
     #[arg(long, value_name = "N")]
     pub(crate) slots: NonZeroU32,
     /// Stores with parts. Once the roads are in them, the parts of the step tiles are sized by the roads of each tile, too
     #[arg(long, value_name = "STORE", num_args = 1..)]
-    store: Vec<PathBuf>,
+    pub(crate) store: Vec<PathBuf>,
     /// Make no part smaller than this without need, in estimated seconds on one core [default: 20 times what the start of a part
     /// takes]
     #[arg(long, value_name = "SECONDS")]
     pub(crate) least_work: Option<f64>,
-}
-
-impl JobsArgs {
-    /// The plan and the stores.
-    ///
-    /// # Errors
-    /// When no plan is named, or several may be meant.
-    pub(crate) fn files(&self) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
-        plan_and_stores(self.plan.as_ref(), &self.store)
-    }
 }
 
 #[derive(Debug, Args)]

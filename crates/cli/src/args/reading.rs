@@ -9,11 +9,9 @@ use corniche_verify::CheckId;
 
 use super::{
     shared::{PackageArg, ThreadsArg},
-    values::{package_among, package_place, parse_position},
+    values::{package_place, parse_position},
     voice::json_progress,
 };
-use crate::failure::Failure;
-
 /// What `verify --help` ends with: the checks, by their ids.
 fn checks() -> String {
     let mut text =
@@ -41,16 +39,16 @@ pub(crate) struct InfoArgs {
 pub(crate) struct VerifyArgs {
     /// The package: a file, or an address on a web server (https://…)
     #[arg(required_unless_present_any = ["dem", "photo", "osm"], value_parser = package_place(), value_hint = ValueHint::AnyPath)]
-    package: Option<PackagePlace>,
+    pub(crate) package: Option<PackagePlace>,
     /// The elevation rasters it was made from, in the same order: checks stored errors against true ones
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    dem: Vec<PathBuf>,
+    pub(crate) dem: Vec<PathBuf>,
     /// The photos it was made from, in the same order: reads them again and checks the photo of every tile against them
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    photo: Vec<PathBuf>,
+    pub(crate) photo: Vec<PathBuf>,
     /// The extracts it was made from: reads them again and checks roads, attributes and counts against them
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    osm: Vec<PathBuf>,
+    pub(crate) osm: Vec<PathBuf>,
     /// With --dem or --osm: the polygon that it was cut with
     #[arg(long, value_name = "FILE")]
     pub(crate) polygon: Option<PathBuf>,
@@ -65,19 +63,6 @@ pub(crate) struct VerifyArgs {
     /// Print JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-impl VerifyArgs {
-    /// The package, its elevation rasters, its photos and its extracts. `--dem`, `--photo` and `--osm` take all that follows them, also a package,
-    /// which is told from other files by its name.
-    ///
-    /// # Errors
-    /// When no package is named, or several may be meant.
-    pub(crate) fn files(&self) -> Result<(PackagePlace, [Vec<PathBuf>; 3]), Failure> {
-        let lists = [&*self.dem, &*self.photo, &*self.osm];
-        let usage = "corniche verify PACKAGE --dem FILE...";
-        package_among(self.package.as_ref(), lists, usage)
-    }
 }
 
 /// What the coordinates in a dump are.

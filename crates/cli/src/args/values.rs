@@ -4,6 +4,7 @@ use std::{
     ffi::OsStr,
     ops::RangeInclusive,
     path::{Path, PathBuf},
+    str::FromStr,
 };
 
 use clap::{builder::TypedValueParser, error::ErrorKind};
@@ -57,7 +58,7 @@ fn may_be_package(file: &Path) -> bool {
     is_package_name(file) || !matches!(PackagePlace::parse(file.into()), Ok(PackagePlace::File(_)))
 }
 
-/// The package, and the files of options that take all that follows them, among which it may be if it is not named by itself. `usage` shows how to
+/// The package, and the files of options such as `--dem` that take all that follows them, among which it may be if it is not named by itself. `usage` shows how to
 /// name it.
 ///
 /// # Errors
@@ -99,6 +100,15 @@ pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
+/// A number of a range, or what to write.
+pub(crate) fn parse_within<T: FromStr + PartialOrd>(
+    text: &str,
+    range: RangeInclusive<T>,
+    advice: &str,
+) -> Result<T, String> {
+    text.parse().ok().filter(|number| range.contains(number)).ok_or_else(|| advice.to_owned())
+}
+
 /// A pixel of such scales and densities is 1 mm to 254 km wide on the ground, which the viewer draws.
 const SCALES: RangeInclusive<u32> = 100..=100_000_000;
 const DOTS_PER_INCH: RangeInclusive<f64> = 10.0..=2400.0;
@@ -106,13 +116,12 @@ const DOTS_PER_INCH: RangeInclusive<f64> = 10.0..=2400.0;
 /// How many times smaller than the ground a picture is, from `1:25000` or `25000`.
 pub(crate) fn parse_scale(text: &str) -> Result<u32, String> {
     let denominator = text.strip_prefix("1:").unwrap_or(text);
-    let number = denominator.parse().ok().filter(|number| SCALES.contains(number));
-    number.ok_or_else(|| "write it like 1:25000, from 1:100 to 1:100000000".to_owned())
+    let advice = "write it like 1:25000, from 1:100 to 1:100000000";
+    parse_within(denominator, SCALES, advice)
 }
 
 pub(crate) fn parse_dpi(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number| DOTS_PER_INCH.contains(number));
-    number.ok_or_else(|| "write a number of pixels to an inch, from 10 to 2400".to_owned())
+    parse_within(text, DOTS_PER_INCH, "write a number of pixels to an inch, from 10 to 2400")
 }
 
 /// A text that is written on a picture, on as many lines as it needs.

@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use serde::Serialize;
 
+use crate::exit::ExitCode;
+
 /// A line on standard error.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -26,7 +28,7 @@ pub(crate) enum ProgressRecord<'a> {
     /// The last line: how the run ended.
     End {
         /// How.
-        end: EndRecord<'a>,
+        end: EndRecord,
     },
 }
 
@@ -102,9 +104,10 @@ pub(crate) struct StageCostRecord<'a> {
 /// How a run ended.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct EndRecord<'a> {
+pub(crate) struct EndRecord {
     /// "done", "failed", "unusable", "exists" or "interrupted".
-    pub(crate) result: &'a str,
+    #[cfg_attr(test, schemars(with = "String"))]
+    pub(crate) result: ExitCode,
     /// The program's exit code: 0 to 4, in this order.
     pub(crate) exit_code: u8,
     /// Why it failed, in words; null when it did not, and for `verify` when a promise is broken.

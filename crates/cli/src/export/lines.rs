@@ -7,10 +7,11 @@ use corniche_network::Network;
 use corniche_tileset::FilePackage;
 use corniche_verify::RecordedElevation;
 
-use super::vector_files::{coordinates, format};
+use super::vector_files::coordinates;
 use crate::{
-    args::{ThreadsArg, VectorArgs},
+    args::{ThreadsArg, VECTOR_FORMATS, VectorArgs, word_of},
     failure::Failure,
+    names::format_of,
     output::{existing_of, named::NamedOutput},
     packages, recorded,
 };
@@ -34,14 +35,14 @@ impl LinesExport {
         (layer, usage): (&str, &str),
     ) -> Result<Self, Failure> {
         let VectorArgs { from, extract, .. } = vector;
-        let format = format(vector.format, &vector.file.output)?;
+        let format = format_of(vector.format, &vector.file.output, &VECTOR_FORMATS)?;
         let coordinates = coordinates(vector.crs, vector.heights.is_some(), format)?;
         let (place, [dem, osm]) = from.files(&extract.osm, usage)?;
         let package = packages::open_with_datum(&place, &vector.datum)?;
         check_lines_request(&package, level, (format, coordinates))?;
         let files = dem.iter().chain(&osm).map(PathBuf::as_path);
         let inputs: Vec<&Path> = [place.name()].into_iter().chain(files).collect();
-        let name = format!("{layer}.{}", format.ending());
+        let name = format!("{layer}.{}", word_of(&VECTOR_FORMATS, &format));
         let existing = existing_of(vector.file.overwrite);
         let output = NamedOutput::create(&vector.file.output, existing, name, &inputs)?;
         let elevation = recorded::elevation(from, &dem, &package)?;

@@ -1,21 +1,18 @@
 //! `corniche export mesh`: the ground of a level as a model.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::PathBuf};
 
 use corniche_export::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, export_mesh};
 use corniche_tileset::Manifest;
 
 use super::vector_files::tell;
 use crate::{
-    args::ExportMeshArgs,
+    args::{ExportMeshArgs, MODEL_FORMATS, word_of},
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    names,
-    output::{Existing, Output, existing_of, named::NamedOutput},
+    names::{file_name, format_of},
+    output::{Output, existing_of, named::NamedOutput},
     packages,
     progress::Progress,
     styles,
@@ -23,15 +20,11 @@ use crate::{
 };
 
 pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
-    let format = args.format.or_else(|| MeshFormat::of_path(&args.file.output));
-    let format = format.ok_or_else(|| {
-        let endings = MeshFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        names::unknown_ending(&args.file.output, &endings)
-    })?;
+    let format = format_of(args.format, &args.file.output, &MODEL_FORMATS)?;
+    let ending = word_of(&MODEL_FORMATS, &format);
     if args.relief == Some(true) && format != MeshFormat::Glb {
         return Err(Failure::unusable(format!(
-            "--relief on: a model in .{} has no normal maps; write a .glb, or leave the option out",
-            format.ending()
+            "--relief on: a model in .{ending} has no normal maps; write a .glb, or leave the option out"
         )));
     }
     let style = styles::style(&args.style)?;
@@ -49,52 +42,29 @@ pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
         style,
         material_file: materials.as_deref().map(file_name),
     };
-    let name = format!("model.{}", format.ending());
+    let name = format!("model.{ending}");
     let existing = existing_of(args.file.overwrite);
     let output =
         NamedOutput::create(&args.file.output, existing, name, &[args.from.package.name()])?;
-    let materials = materials.map(|path| Materials::begin(path, existing, args)).transpose()?;
+    let used = [args.from.package.name(), &args.file.output];
+    let begin = |path: &PathBuf| Output::create(path, existing, &used);
+    let begun = materials.as_ref().map(begin).transpose()?;
     let exported =
         Progress::of(|progress| export_mesh(&package, &request, &output.path(), progress));
     let summary = exported.map_err(|error| Failure::from(error).about_target(&args.file.output))?;
-    let placed = materials
-        .map(|materials| materials.place(&request.materials(package.manifest())))
-        .transpose()?;
+    let new = materials.filter(|path| path.symlink_metadata().is_err());
+    // They get their place before the model, which names them.
+    if let Some(begun) = begun {
+        begun.write_whole(request.materials(package.manifest()).as_bytes())?;
+    }
     let size = output.place().inspect_err(|_| {
         // Materials without a model are of no use, but those that were there before belong to another one.
-        if let Some(Some(new)) = &placed {
+        if let Some(new) = &new {
             let _ = fs::remove_file(new);
         }
     })?;
     tell(&args.file.output, &to_text(args, &summary, package.manifest(), size), package.manifest());
     Ok(ExitCode::Done)
-}
-
-/// The file of materials beside an OBJ.
-struct Materials {
-    path: PathBuf,
-    output: Output,
-}
-
-impl Materials {
-    /// An unusable place is reported here, before any work is done.
-    fn begin(path: PathBuf, existing: Existing, args: &ExportMeshArgs) -> Result<Self, Failure> {
-        let output =
-            Output::create(&path, existing, &[args.from.package.name(), &args.file.output])?;
-        Ok(Self { path, output })
-    }
-
-    /// Writes it and puts it in its place: before the model, which names it. Gives the place if nothing was there before.
-    fn place(self, content: &str) -> Result<Option<PathBuf>, Failure> {
-        let Self { path, output } = self;
-        let is_new = path.symlink_metadata().is_err();
-        output.write_whole(content.as_bytes())?;
-        Ok(is_new.then_some(path))
-    }
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 fn to_text(args: &ExportMeshArgs, summary: &MeshSummary, manifest: &Manifest, size: u64) -> String {

@@ -11,7 +11,7 @@ use crate::{
     credits::credits_line,
     escaped::in_line,
     failure::Failure,
-    messages, names,
+    messages,
     output::{existing_of, folder::FolderOutput, named::NamedOutput},
     progress::Progress,
     table::noted,
@@ -52,14 +52,6 @@ pub(crate) fn fill_folder<T, E: Into<Failure>>(
     let exported = Progress::of(|progress| export(output.path(), progress));
     let summary = exported.map_err(|error| error.into().about_target(&args.output))?;
     Ok((summary, output.place(what)?))
-}
-
-/// The format that is named, or that of the ending.
-pub(crate) fn format(named: Option<VectorFormat>, output: &Path) -> Result<VectorFormat, Failure> {
-    named.or_else(|| VectorFormat::of_path(output)).ok_or_else(|| {
-        let endings = VectorFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        names::unknown_ending(output, &endings)
-    })
 }
 
 /// The coordinates that are asked for; of GeoJSON degrees, where nothing is. `keeps_heights` says that heights are to stay as they are.

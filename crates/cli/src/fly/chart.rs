@@ -6,7 +6,7 @@ use corniche_viewer::{FrameRecord, gpu::PassTimes};
 use plotters::prelude::RGBColor;
 
 use super::measured_run::MeasuredRun;
-use crate::chart::{Axes, Axis, Curve, Marks, Ticks, draw_below_each_other};
+use crate::chart::{Axes, Axis, Curve, Marks, Ticks, draw_below_each_other, ends};
 
 /// People with red-green colour blindness can distinguish the first seven (Okabe & Ito 2008, *Color Universal Design*).
 const COLORS: [RGBColor; 9] = [
@@ -63,9 +63,8 @@ fn range_of(runs: &[MeasuredRun], of: &dyn Fn(&FrameRecord) -> f64) -> Range<f64
 
 /// Axes from the first frame that counts to the last one.
 fn axes(runs: &[MeasuredRun], height_px: u32, caption: String, y: Axis) -> Axes {
-    let counted = || runs.iter().flat_map(MeasuredRun::counted);
-    let begin_s = counted().map(|frame| frame.time_s).fold(f64::INFINITY, f64::min);
-    let end_s = counted().map(|frame| frame.time_s).fold(f64::NEG_INFINITY, f64::max);
+    let counted = runs.iter().flat_map(MeasuredRun::counted);
+    let [begin_s, end_s] = ends(counted.map(|frame| frame.time_s));
     Axes {
         size_px: (1000, height_px),
         caption,

@@ -10,7 +10,6 @@ use corniche_viewer::{
 use super::{chart, list, measured_run::MeasuredRun, pictures::Pictures};
 use crate::{
     args::FlyArgs,
-    exit::ExitCode,
     failure::Failure,
     names::CHART,
     output::{Complete, Existing, Output, existing_of},
@@ -62,21 +61,17 @@ impl Outputs {
         let Self { csv, svg, save_path, pictures } = self;
         let mut written = Vec::new();
         if let Some(svg) = svg {
-            let drawing = chart::flights(runs, adapter).map_err(failed)?;
+            let drawing = chart::flights(runs, adapter)?;
             written.push(svg.fill(drawing.as_bytes())?);
         }
         if let Some(save_path) = save_path {
-            let text = flight.to_text(working).map_err(failed)?;
+            let text = flight.to_text(working).map_err(anyhow::Error::from)?;
             written.push(save_path.fill(text.as_bytes())?);
         }
         written.push(csv.fill(list::to_csv(runs).as_bytes())?);
         pictures.map_or(Ok(()), Pictures::finish)?;
         written.into_iter().try_for_each(Complete::place)
     }
-}
-
-fn failed(error: impl Into<anyhow::Error>) -> Failure {
-    Failure::new(ExitCode::Failed, error)
 }
 
 /// Begins a file that is wanted, which is none of those `used`; then it is used too.

@@ -5,7 +5,7 @@ use plotters::prelude::RGBColor;
 
 use super::{compare::Compared, factors::of_level};
 use crate::{
-    chart::{Axes, Axis, Curve, MOST_SHAPES, Marks, Ticks, draw},
+    chart::{Axes, Axis, Curve, MOST_SHAPES, Marks, Ticks, draw, ends},
     escaped::{in_line, shortened},
     failure::Failure,
 };
@@ -121,9 +121,7 @@ pub(crate) fn comparison(packages: &[Compared<'_>]) -> anyhow::Result<String> {
     let curves: Vec<Curve> = packages.iter().enumerate().map(curve).collect();
     let all = || packages.iter().flat_map(points);
     let highest = all().map(|(_, growth)| growth).fold(1.0_f64, f64::max);
-    let (least, most) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), (x, _)| {
-        (least.min(x), most.max(x))
-    });
+    let [least, most] = ends(all().map(|(x, _)| x));
     let (least, most) = if least <= most { (least, most) } else { (0.0, 0.0) };
     let x = Axis {
         description: "cell of the level, m",

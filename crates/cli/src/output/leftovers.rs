@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use crate::messages;
+use crate::{messages, names::file_name};
 
 /// The endings of names that older versions gave.
 const ENDINGS: [&str; 2] = ["unfinished.files", "replaced"];
 
 /// Tells what lies beside a target under a name that an older version gave.
 pub(crate) fn tell(target: &Path) {
-    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let name = file_name(target);
     for left in ENDINGS.map(|end| target.with_file_name(format!(".{name}.{end}"))) {
         if left.symlink_metadata().is_ok() {
             messages::warning(&format!(

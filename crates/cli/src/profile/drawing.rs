@@ -22,7 +22,7 @@ use plotters::{
     style::text_anchor::{HPos, Pos, VPos},
 };
 
-use crate::chart::in_xml;
+use crate::chart::{ends, in_xml};
 
 const HEIGHT: RGBColor = RGBColor(90, 60, 30);
 const GRADE: RGBColor = RGBColor(200, 30, 40);
@@ -69,7 +69,7 @@ pub(crate) fn to_svg(found: &Profile, title: &str, facts: &str, credits: &str) -
         draw_panel(&heights, found, above)?;
         draw_names(&names, found)?;
         draw_panel(&grades, found, below)?;
-        let font = style(SMALL_FONT).pos(Pos::new(HPos::Left, VPos::Center));
+        let font = centered(SMALL_FONT, HPos::Left);
         let letters = fitting(WIDTH_PX as i32 - LEFT_PX - MARGIN_PX, SMALL_FONT);
         foot.draw(&Text::new(shortened(credits, letters), (LEFT_PX, FOOT_PX as i32 / 2), font))?;
         whole.present()?;
@@ -157,12 +157,8 @@ fn grade_line(line: &[(f64, f64)], over_km: f64, all_km: f64) -> Vec<(f64, f64)>
 
 /// What lies between the least and the largest value, with some room; `with` is always seen.
 fn range(curves: &[Curve], with: Option<f64>) -> Range<f64> {
-    let values = || {
-        let values = curves.iter().flat_map(|curve| curve.lines.iter().flatten());
-        values.map(|(_, value)| *value).chain(with)
-    };
-    let [low, high] =
-        [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)];
+    let values = curves.iter().flat_map(|curve| curve.lines.iter().flatten());
+    let [low, high] = ends(values.map(|(_, value)| *value).chain(with));
     if low > high {
         return 0.0..1.0;
     }
@@ -199,6 +195,11 @@ fn style(size: i32) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size)).color(&BLACK)
 }
 
+/// The same for a text around the height of its place.
+fn centered(size: i32, at: HPos) -> TextStyle<'static> {
+    style(size).pos(Pos::new(at, VPos::Center))
+}
+
 /// How many letters fit.
 fn fitting(width_px: i32, font: i32) -> usize {
     (f64::from(width_px) / (LETTER * f64::from(font))).max(0.0) as usize
@@ -228,7 +229,7 @@ fn draw_head(
     // What lines and bands mean.
     let (mut x, y) = (LEFT_PX, 68);
     let write = |x: i32, text: &str| -> Result<i32> {
-        let font = style(FONT).pos(Pos::new(HPos::Left, VPos::Center));
+        let font = centered(FONT, HPos::Left);
         area.draw(&Text::new(text.to_owned(), (x, y), font))?;
         Ok(x + (text.chars().count() as f64 * LETTER * f64::from(FONT)) as i32 + 2 * MARGIN_PX)
     };
@@ -323,7 +324,7 @@ fn draw_names(area: &Area<'_>, found: &Profile) -> Result<()> {
         }
         let letters = fitting(to - from - 8, SMALL_FONT);
         if letters >= 4 {
-            let font = style(SMALL_FONT).pos(Pos::new(HPos::Center, VPos::Center));
+            let font = centered(SMALL_FONT, HPos::Center);
             let text = shortened(&name, letters);
             area.draw(&Text::new(text, (i32::midpoint(from, to), middle), font))?;
         }

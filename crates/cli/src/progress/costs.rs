@@ -2,10 +2,8 @@
 
 use std::time::Duration;
 
-use corniche_work::Stage;
-
 use super::{
-    texts::{amount, rate},
+    texts::{Reading, amount, rate},
     usage::Usage,
 };
 use crate::{
@@ -13,24 +11,10 @@ use crate::{
     table::{Digits, Table, bytes},
 };
 
-/// What one stage took.
-#[derive(Debug, Clone)]
-pub(crate) struct Cost {
-    pub(crate) stage: Stage,
-    /// How much is done in all, by an earlier run too.
-    pub(crate) done: u64,
-    /// How much of it an earlier run did.
-    pub(crate) already: u64,
-    pub(crate) wall: Duration,
-    pub(crate) used: Usage,
-}
-
-impl Cost {
-    /// What this run did per second; `None` if it did nothing.
-    fn per_second(&self) -> Option<f64> {
-        let done = self.done - self.already;
-        (done > 0 && !self.wall.is_zero()).then(|| done as f64 / self.wall.as_secs_f64())
-    }
+/// What this run did of a stage per second, over all of its time; `None` if it did nothing.
+fn per_second(stage: &Reading) -> Option<f64> {
+    let done = stage.done - stage.already;
+    (done > 0 && !stage.elapsed.is_zero()).then(|| done as f64 / stage.elapsed.as_secs_f64())
 }
 
 /// Shorter stages have no figure for the cores: their CPU time is known in steps of 10 ms only, at its begin and its end.
@@ -42,18 +26,18 @@ fn cores_busy(wall: Duration, used: &Usage) -> Option<f64> {
     Some(cpu.as_secs_f64() / wall.as_secs_f64())
 }
 
-/// All stages that ended, in the order in which they first began.
+/// All stages as they ended, in the order in which they first began.
 #[derive(Debug, Default)]
-pub(crate) struct Costs(Vec<Cost>);
+pub(crate) struct Costs(Vec<Reading>);
 
 impl Costs {
     /// A stage that came before gets what it took now on top.
-    pub(crate) fn add(&mut self, cost: Cost) {
+    pub(crate) fn add(&mut self, cost: Reading) {
         match self.0.iter_mut().find(|before| before.stage == cost.stage) {
             Some(before) => {
                 before.done += cost.done;
                 before.already += cost.already;
-                before.wall += cost.wall;
+                before.elapsed += cost.elapsed;
                 before.used = before.used.and(&cost.used);
             }
             None => self.0.push(cost),
@@ -83,12 +67,12 @@ impl Costs {
         };
         for cost in &self.0 {
             let unit = cost.stage.unit();
-            let rate = cost.per_second().map(|per_second| rate(per_second, unit, digits));
+            let rate = per_second(cost).map(|per_second| rate(per_second, unit, digits));
             let done = amount(cost.done, unit, digits);
             table.row(row(
                 cost.stage.title(),
                 done,
-                cost.wall,
+                cost.elapsed,
                 rate.unwrap_or_default(),
                 &cost.used,
             ));
@@ -99,13 +83,13 @@ impl Costs {
 
     /// The same for programs.
     pub(crate) fn record(&self, wall: Duration, used: &Usage) -> ProgressRecord<'static> {
-        let stage = |cost: &Cost| StageCostRecord {
+        let stage = |cost: &Reading| StageCostRecord {
             stage: cost.stage.id(),
             title: cost.stage.title(),
             done: cost.done,
             already: cost.already,
-            per_second: cost.per_second(),
-            cost: figures(cost.wall, &cost.used),
+            per_second: per_second(cost),
+            cost: figures(cost.elapsed, &cost.used),
         };
         ProgressRecord::Costs {
             summary: self.0.iter().map(stage).collect(),

@@ -14,8 +14,9 @@ fn used(cpu_s: f64, peak_mb: u64, read_mb: u64) -> Usage {
     }
 }
 
-fn cost(stage: Stage, [done, already]: [u64; 2], wall_s: u64, used: Usage) -> Cost {
-    Cost { stage, done, already, wall: Duration::from_secs(wall_s), used }
+fn cost(stage: Stage, [done, already]: [u64; 2], wall_s: u64, used: Usage) -> Reading {
+    let elapsed = Duration::from_secs(wall_s);
+    Reading { stage, done, already, total: None, elapsed, per_second: None, left: None, used }
 }
 
 #[test]

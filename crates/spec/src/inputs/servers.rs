@@ -43,8 +43,7 @@ fn raster_names(names: &[PathBuf], sought: Sought) -> Result<Vec<PathBuf>, Input
         }
     }
     // An archive on a server is looked into.
-    let reached = reach_servers(plain.iter().map(PathBuf::as_path));
-    reached.map_err(|what| InputError::Setting { what })?;
+    reach_servers(plain.iter().map(PathBuf::as_path))?;
     let mut files = Vec::new();
     for name in plain {
         files.extend(unpack_name(name)?);
@@ -83,7 +82,9 @@ pub fn extract_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
 
 /// Tells GDAL how servers are reached, before it is asked for the first of these files, which may be on servers, or name others that are. Its own
 /// settings count for more, and are left alone. Fails with the setting that GDAL refused.
-pub(crate) fn reach_servers<'a>(files: impl IntoIterator<Item = &'a Path>) -> Result<(), String> {
+pub(crate) fn reach_servers<'a>(
+    files: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), InputError> {
     let settings = StorageSettings::of_environment();
     let mut names = files.into_iter().filter_map(Path::to_str);
     if !names.any(|name| name.contains("/vsi"))
@@ -93,7 +94,8 @@ pub(crate) fn reach_servers<'a>(files: impl IntoIterator<Item = &'a Path>) -> Re
         return Ok(());
     }
     for (option, value) in options(&settings) {
-        set_unless_set(option, &value).map_err(|error| format!("{option}: {error}"))?;
+        set_unless_set(option, &value)
+            .map_err(|error| InputError::Setting { what: format!("{option}: {error}") })?;
     }
     Ok(())
 }
