@@ -12,7 +12,7 @@ mod vector_files;
 use std::path::Path;
 
 use corniche_areas::{AreaClass, ClassedLayer};
-use corniche_export::{FeatureRequest, export_areas, export_lines};
+use corniche_export::{FeatureRequest, FileFormat as _, export_areas, export_lines};
 use corniche_remote::PackagePlace;
 use corniche_tileset::{FilePackage, Manifest};
 

@@ -43,6 +43,7 @@ mod edges;
 mod error;
 mod feature;
 mod features;
+mod file_format;
 mod gdal_writing;
 mod geotiff;
 mod globe;
@@ -84,6 +85,7 @@ pub use error::{
 };
 pub use feature::{HeightKind, HeightSource, road_fields};
 pub use features::{FeatureRequest, RoadFeatures, check_lines_request};
+pub use file_format::FileFormat;
 pub use geotiff::{
     GeoTiffRequest, GeoTiffSummary, PictureFacts, PlaceOfPicture, export_geotiff, export_picture,
 };

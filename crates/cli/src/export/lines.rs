@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_export::{Coordinates, VectorFormat, check_lines_request};
+use corniche_export::{Coordinates, FileFormat as _, VectorFormat, check_lines_request};
 use corniche_network::Network;
 use corniche_tileset::FilePackage;
 use corniche_verify::RecordedElevation;

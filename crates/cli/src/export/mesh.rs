@@ -5,16 +5,17 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_export::{MeshFormat, MeshRequest, MeshSummary, ModelRoads, export_mesh};
+use corniche_export::{
+    FileFormat as _, MeshFormat, MeshRequest, MeshSummary, ModelRoads, export_mesh,
+};
 use corniche_tileset::Manifest;
 
-use super::vector_files::tell;
+use super::vector_files::{self, tell};
 use crate::{
     args::ExportMeshArgs,
     escaped::in_line,
     exit::ExitCode,
     failure::Failure,
-    names,
     output::{Existing, Output, existing_of, named::NamedOutput},
     packages,
     progress::Progress,
@@ -23,11 +24,7 @@ use crate::{
 };
 
 pub(crate) fn run(args: &ExportMeshArgs) -> Result<ExitCode, Failure> {
-    let format = args.format.or_else(|| MeshFormat::of_path(&args.file.output));
-    let format = format.ok_or_else(|| {
-        let endings = MeshFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        names::unknown_ending(&args.file.output, &endings)
-    })?;
+    let format = vector_files::format(args.format, &args.file.output)?;
     if args.relief == Some(true) && format != MeshFormat::Glb {
         return Err(Failure::unusable(format!(
             "--relief on: a model in .{} has no normal maps; write a .glb, or leave the option out",

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_export::{Coordinates, SpanFacts, VectorFormat};
+use corniche_export::{Coordinates, FileFormat, SpanFacts, VectorFormat};
 use corniche_tileset::Manifest;
 use corniche_verify::RecordedElevation;
 
@@ -55,10 +55,10 @@ pub(crate) fn fill_folder<T, E: Into<Failure>>(
 }
 
 /// The format that is named, or that of the ending.
-pub(crate) fn format(named: Option<VectorFormat>, output: &Path) -> Result<VectorFormat, Failure> {
-    named.or_else(|| VectorFormat::of_path(output)).ok_or_else(|| {
-        let endings = VectorFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
-        names::unknown_ending(output, &endings)
+pub(crate) fn format<F: FileFormat>(named: Option<F>, output: &Path) -> Result<F, Failure> {
+    named.or_else(|| F::of_path(output)).ok_or_else(|| {
+        let endings: Vec<_> = F::ALL.iter().map(|of| format!(".{}", of.ending())).collect();
+        names::unknown_ending(output, &endings.join(", "))
     })
 }
 

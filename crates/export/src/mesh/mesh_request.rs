@@ -1,6 +1,6 @@
 //! What a user asks for when a package becomes a model: its format, its axes, its roads and its colours.
 
-use std::{fmt::Write as _, path::Path};
+use std::fmt::Write as _;
 
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::{Rgb, Style};
@@ -8,6 +8,7 @@ use corniche_tileset::Manifest;
 
 use crate::{
     bounds::DegreeBounds,
+    file_format::FileFormat,
     gltf::{SLAB_COLOR, SLAB_NAME, y_up},
     surfaces::SurfaceKind,
 };
@@ -23,27 +24,19 @@ pub enum MeshFormat {
     Obj,
 }
 
-impl MeshFormat {
-    /// All formats.
-    pub const ALL: [Self; 3] = [Self::Glb, Self::Ply, Self::Obj];
+impl FileFormat for MeshFormat {
+    const ALL: &[Self] = &[Self::Glb, Self::Ply, Self::Obj];
 
-    /// The ending of its files.
-    #[must_use]
-    pub const fn ending(self) -> &'static str {
+    fn ending(self) -> &'static str {
         match self {
             Self::Glb => "glb",
             Self::Ply => "ply",
             Self::Obj => "obj",
         }
     }
+}
 
-    /// The format that the ending of a name says.
-    #[must_use]
-    pub fn of_path(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        Self::ALL.into_iter().find(|format| format.ending() == ending)
-    }
-
+impl MeshFormat {
     /// Which axis points up where nothing is said.
     #[must_use]
     pub const fn usual_up(self) -> UpAxis {

@@ -1,6 +1,6 @@
 //! The formats of vector files, their endings and GDAL's drivers for them.
 
-use std::path::Path;
+use crate::file_format::FileFormat;
 
 /// A file format of features.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,13 +15,10 @@ pub enum VectorFormat {
     Csv,
 }
 
-impl VectorFormat {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::GeoPackage, Self::FlatGeobuf, Self::GeoJson, Self::Csv];
+impl FileFormat for VectorFormat {
+    const ALL: &[Self] = &[Self::GeoPackage, Self::FlatGeobuf, Self::GeoJson, Self::Csv];
 
-    /// The ending of its files, without the point.
-    #[must_use]
-    pub fn ending(self) -> &'static str {
+    fn ending(self) -> &'static str {
         match self {
             Self::GeoPackage => "gpkg",
             Self::FlatGeobuf => "fgb",
@@ -29,14 +26,9 @@ impl VectorFormat {
             Self::Csv => "csv",
         }
     }
+}
 
-    /// The format of a file by its ending, in capitals or not; `None` for another ending.
-    #[must_use]
-    pub fn of_path(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        Self::ALL.into_iter().find(|format| format.ending() == ending)
-    }
-
+impl VectorFormat {
     /// GDAL's driver.
     pub(crate) fn driver(self) -> &'static str {
         match self {
