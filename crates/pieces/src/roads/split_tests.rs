@@ -271,7 +271,8 @@ proptest! {
             for (ordinal, road) in (0..).zip(&roads) {
                 lay_whole(&mut wanted, road, ordinal, &world, id);
                 if pieces.roads.iter().any(|&(other, _)| other == ordinal) {
-                    let line = corniche_roads::simplify(&road.line, &road.fixed, world.levels.simplify_tolerance_steps(id.z()));
+                    let tolerance_steps = world.levels.simplify_tolerance_steps(id.z());
+                    let line = corniche_roads::simplify(&road.line, &road.fixed, tolerance_steps);
                     let sums = wanted.classes.entry(road.class.number()).or_default();
                     sums.source_vertices += points_in(&road.line, id, &world.levels);
                     sums.simplified_vertices += points_in(&line, id, &world.levels);
