@@ -9,6 +9,7 @@ use std::{
 
 use corniche_export::cell_text;
 use corniche_spec::{Defect, span_reason_words};
+use corniche_work::locked;
 
 use crate::{
     failure::Failure,
@@ -42,7 +43,7 @@ impl DefectList {
         if matches!(defect, Defect::Osm(defect) if defect.is_beyond_extract()) {
             return;
         }
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut file = locked(&self.file);
         if let Ok(output) = &mut *file
             && let Err(error) = output.write_all(line(defect).as_bytes())
         {

@@ -8,8 +8,8 @@ use corniche_areas::{AreaClass, ClassedLayer, LineClass};
 use corniche_geom::Cell;
 use corniche_osm::LineLoss;
 use corniche_tileset::{
-    AreasRecord, Counts, DatumOperationRecord, LinesRecord, Manifest, SampleErrorRecord,
-    ScaleRecord, SpansRecord,
+    AreasRecord, Counts, DatumOperationRecord, LineLevelRecord, LinesRecord, Manifest,
+    SampleErrorRecord, ScaleRecord, SpansRecord,
 };
 
 use self::words::words_of;
@@ -135,9 +135,8 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
 
 /// How positions come from one datum to another, in words.
 pub(crate) fn datum_operation(found: &DatumOperationRecord) -> String {
-    let DatumOperationRecord { from, to, operation, accuracy_m, ballpark } = found;
-    let accuracy = accuracy_m
-        .map_or_else(|| "of unknown accuracy".to_owned(), |m| format!("accurate to {m} m"));
+    let DatumOperationRecord { from, to, operation, ballpark, .. } = found;
+    let accuracy = found.accuracy_text();
     let guess = if *ballpark { ", which takes one datum for the other" } else { "" };
     format!("{} to {} by {}, {accuracy}{guess}", in_line(from), in_line(to), in_line(operation))
 }
@@ -172,7 +171,7 @@ fn line_texts(layer: ClassedLayer, lines: &LinesRecord, digits: Digits) -> Strin
         let length_km = format!("{:.1}", kept.length_um as f64 / 1e9);
         classes.row([name.to_owned(), digits.count(kept.ways), length_km]);
     }
-    let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
+    let levels = levels.iter().map(LineLevelRecord::figures);
     format!(
         "{}: {} ways of the extract, each once, wherever they lie:\n{}{}\n{}",
         layer.table().title,
@@ -186,7 +185,7 @@ fn line_texts(layer: ClassedLayer, lines: &LinesRecord, digits: Digits) -> Strin
 /// How many bridges and tunnels there are, and what they take on each level.
 fn span_texts(spans: &SpansRecord, digits: Digits) -> String {
     let SpansRecord { counts, levels, .. } = spans;
-    let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
+    let levels = levels.iter().map(LineLevelRecord::figures);
     let kilometres = |length_um: u64| format!("{:.1} km", length_um as f64 / 1e9);
     let reasons = counts.reasons.iter();
     let reasons = reasons

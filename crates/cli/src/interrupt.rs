@@ -12,13 +12,15 @@ use std::{
     fs,
     path::{Path, PathBuf},
     sync::{
-        Mutex, MutexGuard, OnceLock, PoisonError,
+        Mutex, MutexGuard, OnceLock,
         atomic::{AtomicBool, Ordering},
         mpsc,
     },
     thread,
     time::Duration,
 };
+
+use corniche_work::locked;
 
 use crate::{exit::ExitCode, failure::Failure, messages};
 
@@ -114,12 +116,12 @@ pub(crate) fn spare(paths: &[&Path]) {
 
 /// What is removed when the program ends early, for as long as no other thread may change that.
 pub(crate) fn temporary() -> MutexGuard<'static, Vec<PathBuf>> {
-    TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner)
+    locked(&TEMPORARY)
 }
 
 /// A folder of intermediate results, from which the same run can go on. It stays when the program ends early, and the user is told.
 pub(crate) fn keep(path: &Path) {
-    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(path.to_path_buf());
+    *locked(&KEPT) = Some(path.to_path_buf());
 }
 
 fn end() -> ! {
@@ -140,7 +142,7 @@ fn end() -> ! {
     let (said, waits) = mpsc::channel();
     let code = i32::from(reason().code().number());
     thread::spawn(move || {
-        let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let kept = locked(&KEPT).clone();
         if let Some(kept) = kept.filter(|kept| kept.exists()) {
             messages::warning(&format!(
                 "what was done is kept in {}; the same command with --resume goes on from there, with -O it starts again",

@@ -1,11 +1,12 @@
 //! The packages that commands read, from files and from web servers.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use corniche_export::with_vertical_crs;
 use corniche_remote::{HttpSettings, HttpSource, PackagePlace, Requests, Web};
 use corniche_tileset::FilePackage;
 use corniche_viewer::tiles::PackageSource;
+use corniche_work::locked;
 
 use crate::{args::DatumArg, exit::ExitCode, failure::Failure};
 
@@ -17,7 +18,7 @@ pub(crate) fn open(place: &PackagePlace) -> Result<FilePackage, Failure> {
     let PackagePlace::Address(address) = place else {
         return Ok(corniche_spec::open_package(place.name())?);
     };
-    let mut opened = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut opened = locked(&OPENED);
     let (web, sources) = &mut *opened;
     let known = sources.iter().find(|source| source.address() == address).cloned();
     let source = if let Some(known) = known {
@@ -57,7 +58,7 @@ pub(crate) fn source(place: &PackagePlace) -> Result<PackageSource, Failure> {
 
 /// Tells, with `-v`, what was asked of web servers.
 pub(crate) fn tell_requests() {
-    for source in &OPENED.lock().unwrap_or_else(PoisonError::into_inner).1 {
+    for source in &locked(&OPENED).1 {
         let Requests { count, received_bytes } = source.requests();
         let package_bytes = source.known_length();
         tracing::debug!(address = %source.address(), requests = count, received_bytes, package_bytes, "read from a web server");

@@ -18,7 +18,7 @@ use std::{
 };
 
 use corniche_spec::Defect;
-use corniche_work::{Observer, Stage};
+use corniche_work::{Observer, Stage, locked};
 use indicatif::{ProgressBar, ProgressStyle};
 use tracing::Span;
 
@@ -222,7 +222,7 @@ fn bar(title: &'static str, total: Option<u64>) -> ProgressBar {
 
 impl Shared {
     fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.state)
     }
 
     /// Tells what is due until all is over.

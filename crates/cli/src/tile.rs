@@ -4,9 +4,9 @@ use corniche_areas::ClassedLayer;
 use corniche_geom::{Bounds, LatticePoint, NodeIndex, TileId};
 use corniche_tileset::{
     AreaRecord, FilePackage, GeoRoad, LineRecord, Manifest, Sections, SpanPoint, SpanRun, SvRoad,
-    Terrain, TilePayload, decode_areas, decode_lines, decode_spans,
+    Terrain, TilePayload, decode_areas, decode_lines,
 };
-use corniche_tin::{Placement, Surface};
+use corniche_tin::Surface;
 
 use crate::{
     args::{Coordinates, TileArgs},
@@ -53,11 +53,11 @@ struct TileLayers {
 impl TileLayers {
     fn read(package: &FilePackage, id: TileId) -> Result<Self, Failure> {
         let bytes = package.tile(id).map_err(Failure::unusable)?.unwrap_or_default();
-        let Manifest { frame, vertical, .. } = package.manifest();
+        let manifest = package.manifest();
         let boundaries = decode_lines(&bytes, id, ClassedLayer::Boundaries);
-        let spans = decode_spans(&bytes, id, frame, vertical.quantum_m);
+        let spans = manifest.decode_spans(&bytes, id);
         Ok(Self {
-            areas: decode_areas(&bytes, id, frame).map_err(Failure::unusable)?,
+            areas: decode_areas(&bytes, id, &manifest.frame).map_err(Failure::unusable)?,
             boundaries: boundaries.map_err(Failure::unusable)?,
             spans: spans.map_err(Failure::unusable)?,
         })
@@ -129,11 +129,10 @@ fn lies_in_data(manifest: &Manifest, point: LatticePoint) -> bool {
 
 /// Whether a tile's triangles cover a place.
 fn has_ground(manifest: &Manifest, payload: &TilePayload, point: LatticePoint) -> bool {
-    payload.terrain.as_ref().is_some_and(|terrain| {
-        let placement =
-            Placement::of_tile(&manifest.frame, payload.id, manifest.vertical.quantum_m);
-        Surface::new(&terrain.tin, placement).locate(point).is_some()
-    })
+    payload
+        .terrain
+        .as_ref()
+        .is_some_and(|terrain| manifest.surface(payload.id, &terrain.tin).locate(point).is_some())
 }
 
 /// The tile of a level that holds a place, and where that is; `None` outside the root tile.
@@ -221,8 +220,7 @@ fn document<'a>(
     bounds.include(places.of([min_x, min_y]));
     bounds.include(places.of([max_x, max_y]));
     let terrain = payload.terrain.as_ref();
-    let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
-    let surface = terrain.map(|terrain| Surface::new(&terrain.tin, placement));
+    let surface = terrain.map(|terrain| manifest.surface(id, &terrain.tin));
     let (mut roads_geo, mut spans) = (Vec::new(), Vec::new());
     // Without ground a tile has neither.
     if let Some(surface) = &surface {

@@ -51,7 +51,7 @@ impl DegreeBounds {
             [center - self.half_width, center + self.half_width]
         };
         let own = Bounds { min_x: west, min_y: self.south, max_x: east, max_y: self.north };
-        intersection(whole, own)
+        whole.intersection(&own)
     }
 
     /// The longitude, within ±180, and the latitude of its middle.
@@ -117,26 +117,6 @@ impl DegreeBounds {
         };
         let across = low[1] - room[1] <= self.north && high[1] + room[1] >= self.south;
         across && [-360.0, 0.0, 360.0].into_iter().any(meets)
-    }
-}
-
-/// What two rectangles have in common; with its sides exchanged where that is nothing.
-pub(crate) fn intersection(one: Bounds, other: Bounds) -> Bounds {
-    Bounds {
-        min_x: one.min_x.max(other.min_x),
-        min_y: one.min_y.max(other.min_y),
-        max_x: one.max_x.min(other.max_x),
-        max_y: one.max_y.min(other.max_y),
-    }
-}
-
-/// A rectangle with a margin on all sides.
-pub(crate) fn expanded(bounds: Bounds, margin: f64) -> Bounds {
-    Bounds {
-        min_x: bounds.min_x - margin,
-        min_y: bounds.min_y - margin,
-        max_x: bounds.max_x + margin,
-        max_y: bounds.max_y + margin,
     }
 }
 

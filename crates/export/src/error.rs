@@ -21,7 +21,6 @@ use corniche_geom::{ProjectError, TileId, TooMuchWork};
 use corniche_gis::{CrsError, LibraryError};
 use corniche_store::LackOfRoom;
 use corniche_tileset::{DecodeError, FilePackage, OpenError, ReadError};
-use corniche_work::Interrupted;
 
 /// What an error asks of whoever meets it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,11 +65,7 @@ macro_rules! activity {
             }
         }
 
-        impl From<Interrupted> for $error {
-            fn from(_: Interrupted) -> Self {
-                Self::Interrupted
-            }
-        }
+        corniche_work::from_interrupted!($error);
     };
 }
 

@@ -78,7 +78,7 @@ fn lay_on(
     }
     let Some(payload) = package.payload(id, Sections::TERRAIN)? else { return Ok(()) };
     let Some(terrain) = &payload.terrain else { return Ok(()) };
-    let surface = read::surface_of(manifest, id, terrain);
+    let surface = manifest.surface(id, &terrain.tin);
     for (line, path) in paths.iter().enumerate() {
         let Some(path) = path else { continue };
         let starts = starts_of(path);

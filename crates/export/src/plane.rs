@@ -1,5 +1,7 @@
 //! Places and numbers on straight lines.
 
+pub(crate) use corniche_geom::along;
+
 /// The number at a share of the way between two, of which one counts alone at its own place.
 pub(crate) fn mix(from: f64, to: f64, share: f64) -> f64 {
     match share {
@@ -7,11 +9,6 @@ pub(crate) fn mix(from: f64, to: f64, share: f64) -> f64 {
         1.0.. => to,
         _ => from + share * (to - from),
     }
-}
-
-/// The place at a share of the way.
-pub(crate) fn along<const N: usize>(from: [f64; N], to: [f64; N], share: f64) -> [f64; N] {
-    std::array::from_fn(|axis| from[axis] + (to[axis] - from[axis]) * share)
 }
 
 /// The place in the middle.

@@ -3,17 +3,16 @@
 use std::collections::HashMap;
 
 use corniche_drape::{DrapedLine, DrapedVertex};
-use corniche_geom::{Bounds, GridFrame, LatticeBounds, LatticePoint, TileId};
+use corniche_geom::{Bounds, GridFrame, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{
-    DecodeError, FilePackage, GeoRoad, Manifest, Sections, SpanRun, Terrain, TilePayload,
-    decode_spans, pmtiles_order,
+    DecodeError, FilePackage, GeoRoad, Manifest, Sections, SpanRun, TilePayload, pmtiles_order,
 };
-use corniche_tin::{Placement, Surface};
+use corniche_tin::Surface;
 
 use crate::{
     between_samples::SampleCells,
-    bounds::{DegreeBounds, intersection},
+    bounds::DegreeBounds,
     error::{SelectionError, TileError},
     piece::{Piece, PieceHeights, PieceKey, Vertex},
 };
@@ -77,7 +76,7 @@ pub(crate) fn meets(manifest: &Manifest, id: TileId, bounds: &DegreeBounds) -> b
 /// The part of a tile on which data can lie. The table of coordinates reaches little beyond the data: of small ones a tile is many times as wide, and
 /// places far outside would come out anywhere.
 pub(crate) fn data_part(manifest: &Manifest, id: TileId) -> Bounds {
-    intersection(manifest.frame.tile_bounds(id), manifest.data_bounds)
+    manifest.frame.tile_bounds(id).intersection(&manifest.data_bounds)
 }
 
 /// Longitudes and latitudes over the part of a tile on which data can lie.
@@ -115,7 +114,7 @@ pub(crate) fn bounded_pieces(
     let (manifest, Some(terrain)) = (package.manifest(), &payload.terrain) else {
         return Ok(Vec::new());
     };
-    let surface = surface_of(manifest, id, terrain);
+    let surface = manifest.surface(id, &terrain.tin);
     let mut pieces = pieces_on(&surface, &payload, manifest, classes)?;
     let cells = SampleCells::of(manifest, id.z());
     let mut cells = cells.as_ref().map(|cells| cells.on_tile(&surface, terrain.geometric_error_m));
@@ -123,12 +122,6 @@ pub(crate) fn bounded_pieces(
         piece.heights.tolerance_m = cells.as_mut().map(|cells| cells.bound_m(&piece.vertices));
     }
     Ok(pieces)
-}
-
-/// The ground of a tile, on the lattice.
-pub(crate) fn surface_of(manifest: &Manifest, id: TileId, terrain: &Terrain) -> Surface {
-    let Manifest { frame, vertical, .. } = manifest;
-    Surface::new(&terrain.tin, Placement::of_tile(frame, id, vertical.quantum_m))
 }
 
 /// What one tile holds of a layer, which `decode` finds in its bytes.
@@ -152,8 +145,7 @@ pub(crate) fn span_runs(
     if manifest.spans.is_none() {
         return Ok(runs);
     }
-    let runs_of =
-        |bytes: &[u8]| decode_spans(bytes, id, &manifest.frame, manifest.vertical.quantum_m);
+    let runs_of = |bytes: &[u8]| manifest.decode_spans(bytes, id);
     for run in layer(package, id, "bridges and tunnels", runs_of)? {
         runs.entry(run.way_id).or_default().push(run);
     }
@@ -167,7 +159,7 @@ pub(crate) fn pieces_of(
     classes: &[FunctionalRoadClass],
 ) -> Result<Vec<Piece>, TileError> {
     let Some(terrain) = &payload.terrain else { return Ok(Vec::new()) };
-    pieces_on(&surface_of(manifest, payload.id, terrain), payload, manifest, classes)
+    pieces_on(&manifest.surface(payload.id, &terrain.tin), payload, manifest, classes)
 }
 
 fn pieces_on(
@@ -224,12 +216,7 @@ fn goes_on(road: &GeoRoad, frame: &GridFrame, id: TileId) -> [bool; 2] {
     let tile = frame.tile_lattice_bounds(id);
     let vertices = &road.line.vertices;
     [vertices.first(), vertices.last()].map(|vertex| match vertex {
-        Some(DrapedVertex::Source { point, .. }) => is_on_border(*point, &tile),
+        Some(DrapedVertex::Source { point, .. }) => tile.has_on_border(*point),
         _ => false,
     })
-}
-
-/// Whether a point of a tile lies on its border.
-pub(crate) fn is_on_border(point: LatticePoint, tile: &LatticeBounds) -> bool {
-    [tile.min.u, tile.max.u].contains(&point.u) || [tile.min.v, tile.max.v].contains(&point.v)
 }

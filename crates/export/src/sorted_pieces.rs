@@ -4,12 +4,12 @@ use std::{
     fs::File,
     io::{self, Read as _, Seek as _, SeekFrom, Write as _},
     path::{Path, PathBuf},
-    sync::{Mutex, PoisonError},
+    sync::Mutex,
 };
 
 use corniche_geom::TileId;
 use corniche_store::{Groups, Scratch, SortRecord, Sorter, Span};
-use corniche_work::{Observer, Stage, workers::one_by_one};
+use corniche_work::{Observer, Stage, locked, workers::one_by_one};
 
 use crate::error::FeaturesError;
 
@@ -36,14 +36,14 @@ impl FileScratch {
 
 impl Scratch for FileScratch {
     fn append(&self, bytes: &[u8]) -> io::Result<Span> {
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut file = locked(&self.file);
         let offset = file.seek(SeekFrom::End(0))?;
         file.write_all(bytes)?;
         Ok(Span { offset, length: bytes.len() as u64 })
     }
 
     fn read(&self, span: Span) -> io::Result<Vec<u8>> {
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut file = locked(&self.file);
         let mut bytes = vec![0; usize::try_from(span.length).map_err(io::Error::other)?];
         file.seek(SeekFrom::Start(span.offset))?;
         file.read_exact(&mut bytes)?;

@@ -37,16 +37,47 @@ impl Bounds {
 
     /// Makes the rectangle large enough to hold `point`.
     pub fn include(&mut self, point: [f64; 2]) {
-        self.min_x = self.min_x.min(point[0]);
-        self.min_y = self.min_y.min(point[1]);
-        self.max_x = self.max_x.max(point[0]);
-        self.max_y = self.max_y.max(point[1]);
+        let [x, y] = point;
+        *self = self.union(&Self { min_x: x, min_y: y, max_x: x, max_y: y });
     }
 
     /// Whether it holds no point at all.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         !(self.min_x <= self.max_x && self.min_y <= self.max_y)
+    }
+
+    /// The same rectangle, larger by a margin in the west and in the east, and by one in the south and in the north.
+    #[must_use]
+    pub fn expanded(&self, [east, north]: [f64; 2]) -> Self {
+        Self {
+            min_x: self.min_x - east,
+            min_y: self.min_y - north,
+            max_x: self.max_x + east,
+            max_y: self.max_y + north,
+        }
+    }
+
+    /// The smallest rectangle around both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            min_x: self.min_x.min(other.min_x),
+            min_y: self.min_y.min(other.min_y),
+            max_x: self.max_x.max(other.max_x),
+            max_y: self.max_y.max(other.max_y),
+        }
+    }
+
+    /// The rectangle that both have in common; with its sides exchanged where that is nothing.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        Self {
+            min_x: self.min_x.max(other.min_x),
+            min_y: self.min_y.max(other.min_y),
+            max_x: self.max_x.min(other.max_x),
+            max_y: self.max_y.min(other.max_y),
+        }
     }
 
     /// Whether a point lies inside or on the edge.
@@ -110,6 +141,13 @@ impl LatticeBounds {
     #[must_use]
     pub fn contains(&self, point: LatticePoint) -> bool {
         (self.min.u..=self.max.u).contains(&point.u) && (self.min.v..=self.max.v).contains(&point.v)
+    }
+
+    /// Whether a point of the rectangle lies on its edge.
+    #[must_use]
+    pub fn has_on_border(&self, point: LatticePoint) -> bool {
+        let Self { min, max } = self;
+        [min.u, max.u].contains(&point.u) || [min.v, max.v].contains(&point.v)
     }
 
     /// The same rectangle, larger by `margin` steps on every side.

@@ -6,10 +6,12 @@
 //!
 //! This crate never knows a road, a file or a GPU.
 
+mod along;
 mod barycentric;
 mod bounds;
 mod cell;
 mod coordinate_table;
+mod disjoint_sets;
 mod geo_transform;
 mod grid_frame;
 mod height_grid;
@@ -30,10 +32,12 @@ mod tile_size;
 pub mod wgs84;
 mod work;
 
+pub use along::along;
 pub use barycentric::barycentric;
 pub use bounds::{Bounds, LatticeBounds};
 pub use cell::Cell;
 pub use coordinate_table::{CoordinateTable, CoordinateTableError, width_factor};
+pub use disjoint_sets::DisjointSets;
 pub use geo_transform::GeoTransform;
 pub use grid_frame::{GridFrame, GridFrameError, MAX_COORDINATE_M, MAX_LATTICE_STEPS};
 pub use height_grid::HeightGrid;
@@ -43,7 +47,7 @@ pub use lattice_region::LatticeRegion;
 pub use map_lines::{Degrees, known_line_length_m, line_length_m, ring_area_m2};
 pub use node::{NodeIndex, NodeWindow};
 pub use orientation::{Side, cross, dot, side};
-pub use plan_records::{ClipRecord, ScaleRecord};
+pub use plan_records::{ClipRecord, DatumOperationRecord, ScaleRecord};
 pub use polyline::{Polyline, PolylineError};
 pub use projection::{ProjectError, Projection};
 pub use seam::{OnSeamedMap, Seam, split_at_seam};

@@ -1,6 +1,6 @@
 //! A polygon in the working CRS, and on the lattice of a package.
 
-use corniche_geom::{Bounds, GridFrame, LatticePoint, LatticeRegion, Seam};
+use corniche_geom::{Bounds, GridFrame, LatticePoint, LatticeRegion, Seam, along};
 
 use crate::crs::horizontal::GridCrs;
 use crate::crs::operation::CrsOperation;
@@ -151,7 +151,7 @@ fn of_ring(
         // middle.
         let probes: Vec<[f64; 2]> = open
             .iter()
-            .flat_map(|&index| [0.25, 0.5].map(|t| between(corners[index].own, next(index).own, t)))
+            .flat_map(|&index| [0.25, 0.5].map(|t| along(corners[index].own, next(index).own, t)))
             .collect();
         let Some(found) = carry(&probes)? else { return Ok(None) };
         let mut middles = vec![None; corners.len()];
@@ -160,7 +160,7 @@ fn of_ring(
             let to = beside(to, from);
             let found = [beside(found[0], from), beside(found[1], from)];
             let off = |image: [f64; 2], t: f64| {
-                let straight = between(from, to, t);
+                let straight = along(from, to, t);
                 (image[0] - straight[0]).hypot(image[1] - straight[1])
             };
             if off(found[0], 0.25) > tolerance_m || off(found[1], 0.5) > tolerance_m {
@@ -178,8 +178,4 @@ fn of_ring(
         }
     }
     Ok(None)
-}
-
-fn between(from: [f64; 2], to: [f64; 2], t: f64) -> [f64; 2] {
-    [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * t)
 }

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use corniche_spec::artifacts::ArtifactError;
 use corniche_store::StoreError;
-use corniche_work::Interrupted;
 
 /// Why heights or photos could not be read or kept.
 #[derive(Debug, thiserror::Error)]
@@ -26,11 +25,7 @@ pub enum GroundError {
 
 corniche_dem::from_dem_errors!(GroundError);
 
-impl From<Interrupted> for GroundError {
-    fn from(_: Interrupted) -> Self {
-        Self::Interrupted
-    }
-}
+corniche_work::from_interrupted!(GroundError);
 
 impl From<StoreError> for GroundError {
     fn from(error: StoreError) -> Self {

@@ -7,7 +7,6 @@ use corniche_geom::TileId;
 use corniche_photo::TexelWindow;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tileset::{FilePackage, Sections};
-use corniche_tin::{Placement, Surface};
 use corniche_work::{Observer, Stage, workers::one_by_one};
 use geo::{Euclidean, Length as _, LineString};
 
@@ -100,8 +99,7 @@ impl Matching<'_> {
         let Some(payload) = package.payload(id, wanted)? else { return Ok(()) };
         let Some(terrain) = &payload.terrain else { return Ok(()) };
         let manifest = package.manifest();
-        let placement = Placement::of_tile(&manifest.frame, id, manifest.vertical.quantum_m);
-        let surface = Surface::new(&terrain.tin, placement);
+        let surface = manifest.surface(id, &terrain.tin);
         let mut blocks: BTreeMap<[i64; 2], Vec<Run>> = BTreeMap::new();
         for road in &payload.roads_geo {
             if !self.request.classes.contains(&road.class) {

@@ -4,7 +4,6 @@ use corniche_drape::BadLine;
 use corniche_geom::TileId;
 use corniche_photo::PhotoError;
 use corniche_tileset::{OpenError, ReadError};
-use corniche_work::Interrupted;
 
 /// Why roads could not be compared with an image.
 #[derive(Debug, thiserror::Error)]
@@ -29,8 +28,4 @@ pub enum MatchError {
     Interrupted,
 }
 
-impl From<Interrupted> for MatchError {
-    fn from(_: Interrupted) -> Self {
-        Self::Interrupted
-    }
-}
+corniche_work::from_interrupted!(MatchError);

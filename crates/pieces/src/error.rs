@@ -6,7 +6,6 @@ use corniche_geom::Bounds;
 use corniche_gis::listed_files;
 use corniche_spec::artifacts::ArtifactError;
 use corniche_store::{LackOfRoom, StoreError};
-use corniche_work::Interrupted;
 
 /// Why an extract could not be read, cut or laid on the ground.
 #[derive(Debug, thiserror::Error)]
@@ -45,11 +44,7 @@ pub enum ExtractError {
 
 corniche_dem::from_dem_errors!(ExtractError);
 
-impl From<Interrupted> for ExtractError {
-    fn from(_: Interrupted) -> Self {
-        Self::Interrupted
-    }
-}
+corniche_work::from_interrupted!(ExtractError);
 
 impl From<StoreError> for ExtractError {
     fn from(error: StoreError) -> Self {

@@ -24,7 +24,7 @@ use corniche_spec::{
     settings_record,
 };
 use corniche_store::{Disk, LocalStore, SYNC_INTERVAL, SystemDisk};
-use corniche_tileset::{InputKind, Manifest};
+use corniche_tileset::Manifest;
 
 use self::destination::Destination;
 use crate::{
@@ -125,7 +125,7 @@ fn warn_of_other_network(context: &Context<'_>) {
     let GroundSource::Package(terrain) = context.source else { return };
     let PlanSettings { terrain: of_terrain, roads, areas, lines, osm, .. } = context.settings;
     let manifest = terrain.manifest();
-    if osm.is_empty() || !manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input)) {
+    if osm.is_empty() || !manifest.has_extract() {
         return;
     }
     let ours = settings_record::of(

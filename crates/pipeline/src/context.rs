@@ -8,10 +8,14 @@ use corniche_ground::{
 };
 use corniche_plan::Opened;
 use corniche_spec::{
-    Observer, PlanSettings, Resources, data_outline::data_outline, data_tiles::DataTiles,
-    extent::Outline, levels::Levels, memory_shares::MemoryShares, true_lengths::TrueLengths,
+    Observer, PlanSettings, Resources, artifacts::Kind, data_outline::data_outline,
+    data_tiles::DataTiles, extent::Outline, levels::Levels, memory_shares::MemoryShares,
+    true_lengths::TrueLengths,
 };
 use corniche_store::Artifacts;
+use corniche_work::{Stage, workers};
+
+use crate::BuildError;
 
 /// What the steps of a build share. It is made from the settings alone, so every process that works on one build has the same.
 pub(crate) struct Context<'a> {
@@ -52,6 +56,20 @@ impl<'a> Context<'a> {
     /// Whether a tile has a relief section if it has ground.
     pub(crate) fn has_relief(&self, id: TileId) -> bool {
         self.settings.terrain.relief.has(id.z(), self.frame().max_level())
+    }
+
+    /// Makes what some tiles lack of a kind of artifacts, in their order: a stage. `work` keeps what it makes.
+    pub(crate) fn make_missing<S>(
+        &self,
+        (stage, kind): (Stage, Kind),
+        mut ids: Vec<TileId>,
+        start: impl Fn() -> Result<S, BuildError> + Sync,
+        work: impl Fn(&mut S, TileId) -> Result<(), BuildError> + Sync,
+    ) -> Result<(), BuildError> {
+        let all = ids.len();
+        ids.retain(|&id| !self.store.has(kind.of_tile(id)));
+        let (threads, work) = (self.threads(), |state: &mut S, id: &TileId| work(state, *id));
+        workers::make_missing(self.observer, stage, threads, (&ids, all), start, work)
     }
 
     pub(crate) fn data(&self) -> DataTiles {

@@ -9,7 +9,6 @@ use corniche_plan::{PlanError, PlanFileError};
 use corniche_spec::{artifacts::ArtifactError, inputs::InputError};
 use corniche_store::{LackOfRoom, StoreError, TargetError};
 use corniche_tileset::{OpenError, WriteError};
-use corniche_work::Interrupted;
 
 /// Why a package could not be built.
 #[derive(Debug, thiserror::Error)]
@@ -105,11 +104,7 @@ fn room_of(error: &WriteError) -> String {
     })
 }
 
-impl From<Interrupted> for BuildError {
-    fn from(_: Interrupted) -> Self {
-        Self::Interrupted
-    }
-}
+corniche_work::from_interrupted!(BuildError);
 
 impl From<StoreError> for BuildError {
     fn from(error: StoreError) -> Self {

@@ -2,6 +2,8 @@
 
 use corniche_dem::DemError;
 
+use corniche_work::Interrupted;
+
 use super::*;
 
 /// The same cause from heights, inputs, the plan and the extract.

@@ -1,7 +1,7 @@
 //! The table of longitudes and latitudes that a package carries.
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{Bounds, CoordinateTable, CoordinateTableError};
+use corniche_geom::{CoordinateTable, CoordinateTableError};
 
 use crate::PlanError;
 
@@ -17,12 +17,9 @@ pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable,
     let data = plan.data_bounds;
     let room_m = 0.1 * data.width().max(data.height()).max(plan.frame.cell().shorter_m());
     let pole_m = plan.poles_y_m().unwrap_or(f64::INFINITY);
-    let around = Bounds {
-        min_x: data.min_x - room_m,
-        min_y: (data.min_y - room_m).max(-pole_m).min(data.min_y),
-        max_x: data.max_x + room_m,
-        max_y: (data.max_y + room_m).min(pole_m).max(data.max_y),
-    };
+    let mut around = data.expanded([room_m; 2]);
+    around.min_y = around.min_y.max(-pole_m).min(data.min_y);
+    around.max_y = around.max_y.min(pole_m).max(data.max_y);
     let sample = |bounds| CoordinateTable::sample(&projection, bounds, COORDINATE_TOLERANCE_M);
     match sample(around) {
         Err(CoordinateTableError::TooCurved { .. }) => Ok(sample(data)?),

@@ -5,7 +5,6 @@ use std::{io, path::PathBuf};
 use corniche_ground::{GroundError, TerrainError};
 use corniche_roads::FrcTableError;
 use corniche_spec::inputs::InputError;
-use corniche_work::Interrupted;
 
 /// Version of a plan's JSON; other versions are refused.
 pub const PLAN_VERSION: u32 = 8;
@@ -76,11 +75,7 @@ pub enum PlanError {
 
 corniche_dem::from_dem_errors!(PlanError);
 
-impl From<Interrupted> for PlanError {
-    fn from(_: Interrupted) -> Self {
-        Self::Interrupted
-    }
-}
+corniche_work::from_interrupted!(PlanError);
 
 impl PlanError {
     /// Whether the cause is an unusable input or setting, rather than a failure while it was looked at.

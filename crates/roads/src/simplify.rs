@@ -2,16 +2,14 @@
 
 use corniche_geom::{LatticePoint, Polyline, cross, dot};
 
-use crate::Road;
-
 /// A stretch is cut so often, each time in all its parts at once. Then all points stay that are left: a line that goes forth and back loses none of them
 /// anyway, and would be looked at as often as it has points.
 const MOST_ROUNDS: usize = 128;
 
-/// The road's line with fewer points: no point of the source lies farther than `tolerance_steps` (lattice steps) from
+/// A line with fewer points: no point of the source lies farther than `tolerance_steps` (lattice steps) from
 /// the segment that replaces its stretch.
 ///
-/// Points listed in [`Road::fixed`] and both ends stay. A tolerance of 0 (or below, or NaN) keeps every point. The
+/// Points whose indices are in `fixed` and both ends stay. A tolerance of 0 (or below, or NaN) keeps every point. The
 /// result does not depend on the direction of the way: a way and its reverse keep the same points (except where it
 /// runs back over itself point by point and so has no direction). Of a stretch that returns to its start (a ring
 /// between junctions) the farthest point always stays, so that the line never vanishes; a ring smaller than the
@@ -24,23 +22,23 @@ const MOST_ROUNDS: usize = 128;
 /// a stretch that returns to its start keeps its farthest point; and of points equally far away the choice does not depend
 /// on the direction of the way. `geo`'s implementation promises neither of the last two; tests compare with it elsewhere.
 #[must_use]
-pub fn simplify(road: &Road, tolerance_steps: f64) -> Polyline {
-    let kept = kept_points(road, tolerance_steps);
-    let points = road.line.points();
+pub fn simplify(line: &Polyline, fixed: &[u32], tolerance_steps: f64) -> Polyline {
+    let kept = kept_points(line, fixed, tolerance_steps);
+    let points = line.points();
     if kept.len() == points.len() {
-        return road.line.clone();
+        return line.clone();
     }
     // A polyline has two different neighbours somewhere; each stretch keeps one such pair if it has one.
     let kept = kept.into_iter().map(|index| points[index]).collect();
-    Polyline::new(kept).unwrap_or_else(|_| road.line.clone())
+    Polyline::new(kept).unwrap_or_else(|_| line.clone())
 }
 
 /// The indices of the points that [`simplify`] keeps, ascending.
 #[must_use]
-pub fn kept_points(road: &Road, tolerance_steps: f64) -> Vec<usize> {
+pub fn kept_points(line: &Polyline, fixed: &[u32], tolerance_steps: f64) -> Vec<usize> {
     // With this comparison NaN keeps every point, too.
     let reduces = tolerance_steps > 0.0;
-    let points = road.line.points();
+    let points = line.points();
     if !reduces || points.len() <= 2 {
         return (0..points.len()).collect();
     }
@@ -48,7 +46,7 @@ pub fn kept_points(road: &Road, tolerance_steps: f64) -> Vec<usize> {
     let mut keep = vec![false; points.len()];
     keep[0] = true;
     keep[last] = true;
-    for &index in &road.fixed {
+    for &index in fixed {
         if let Some(flag) = keep.get_mut(index as usize) {
             *flag = true;
         }

@@ -1,6 +1,6 @@
 //! The lines of chains, with what is to be known of them where they meet other lines.
 
-use corniche_geom::{IndexLists, LatticePoint};
+use corniche_geom::{IndexLists, LatticePoint, along};
 use corniche_network::{ChainNumber, Chains, Network, NodeNumber};
 
 use crate::{
@@ -274,6 +274,6 @@ impl ChainLine {
         let [from, to] = self.segment(segment).map(LatticePoint::in_steps);
         let [from_m, to_m] = [segment, segment + 1].map(|point| self.alongs_m[point]);
         let share = ((along_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0);
-        (segment, [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis])))
+        (segment, along(from, to, share))
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use corniche_geom::{LatticePoint, Work};
+use corniche_geom::{DisjointSets, LatticePoint, Work};
 use rstar::{
     AABB, RTree,
     primitives::{GeomWithData, Rectangle},
@@ -28,7 +28,7 @@ pub struct SpanLine<'a> {
 /// Of lines that lie over each other more than any real ones all are one group.
 #[must_use]
 pub fn connected(lines: &[SpanLine<'_>], same_places: &[[i64; 2]]) -> Vec<usize> {
-    let mut groups = Groups::new(lines.len());
+    let mut groups = DisjointSets::new(lines.len());
     let mut first_at: HashMap<i64, usize> = HashMap::new();
     for (number, line) in lines.iter().enumerate() {
         for &(_, id) in line.nodes {
@@ -78,33 +78,6 @@ fn boxes_of(
         }
         GeomWithData::new(Rectangle::from_corners(low, high), number)
     })
-}
-
-/// Numbers in groups; each group is known by its smallest.
-#[derive(Debug)]
-struct Groups(Vec<usize>);
-
-impl Groups {
-    /// So many numbers, each alone.
-    fn new(count: usize) -> Self {
-        Self((0..count).collect())
-    }
-
-    /// The smallest number of a group.
-    fn first_of(&mut self, number: usize) -> usize {
-        let mut first = number;
-        while self.0[first] != first {
-            self.0[first] = self.0[self.0[first]];
-            first = self.0[first];
-        }
-        first
-    }
-
-    /// Makes one group of those of two numbers.
-    fn join(&mut self, one: usize, other: usize) {
-        let (one, other) = (self.first_of(one), self.first_of(other));
-        self.0[one.max(other)] = one.min(other);
-    }
 }
 
 #[cfg(test)]

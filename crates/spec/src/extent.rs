@@ -2,7 +2,7 @@
 
 use corniche_areas::{OutlineError, Polygon, intersection};
 use corniche_geom::{
-    Bounds, GridFrame, LatticeBounds, LatticePoint, LatticeRegion, Projection, Seam,
+    Bounds, GridFrame, LatticeBounds, LatticePoint, LatticeRegion, Projection, Seam, along,
 };
 
 /// Boxes in degrees are looked at this far around the data, as a share of their size and in degrees at least: what is farther away
@@ -184,7 +184,7 @@ impl Imaging<'_> {
                 let [from, to] = [corners[index], corners[(index + 1) % corners.len()]];
                 (0..pieces).map(move |piece| {
                     let share = piece as f64 / pieces as f64;
-                    [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
+                    along(from, to, share)
                 })
             };
             let mut ring: Vec<[f64; 2]> = (0..corners.len()).flat_map(side).collect();

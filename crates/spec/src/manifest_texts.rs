@@ -24,14 +24,7 @@ pub fn outline(outline: &Outline) -> Vec<Vec<Vec<[i64; 2]>>> {
 /// How positions come from one datum to another, as packages record it.
 #[must_use]
 pub fn datum_operations(found: &[DatumOperation]) -> Vec<DatumOperationRecord> {
-    let record = |found: &DatumOperation| DatumOperationRecord {
-        from: found.from.clone(),
-        to: found.to.clone(),
-        operation: found.name.clone(),
-        accuracy_m: found.accuracy_m,
-        ballpark: found.is_ballpark,
-    };
-    found.iter().map(record).collect()
+    found.iter().map(|found| found.record.clone()).collect()
 }
 
 /// An operation between datums in words.
@@ -68,11 +61,7 @@ pub fn has_comparable_operations(manifest: &Manifest) -> bool {
 #[must_use]
 pub fn recorded_datum_operations(manifest: &Manifest) -> Vec<DatumOperation> {
     let operation = |found: &DatumOperationRecord| DatumOperation {
-        from: found.from.clone(),
-        to: found.to.clone(),
-        name: found.operation.clone(),
-        accuracy_m: found.accuracy_m,
-        is_ballpark: found.ballpark,
+        record: found.clone(),
         // The build was allowed to use it, and what would have been better is not recorded.
         must_be_allowed: false,
         better: None,

@@ -11,11 +11,11 @@ mod sv_tails;
 pub(crate) mod check;
 
 pub use contents::{
-    AreaClassRecord, AreaCounts, AreaLevelRecord, AreasRecord, DatumOperationRecord,
-    LineClassRecord, LineCounts, LineLevelRecord, LinesRecord, Manifest, OuterGround,
-    PhotoLevelRecord, SpanCounts, SpansRecord, VerticalRecord,
+    AreaClassRecord, AreaCounts, AreaLevelRecord, AreasRecord, LineClassRecord, LineCounts,
+    LineLevelRecord, LinesRecord, Manifest, OuterGround, PhotoLevelRecord, SpanCounts, SpansRecord,
+    VerticalRecord,
 };
-pub use corniche_geom::{ClipRecord, ScaleRecord};
+pub use corniche_geom::{ClipRecord, DatumOperationRecord, ScaleRecord};
 pub use corniche_settings::{
     AreaTableRecord, PhotoRecord, PolygonRecord, ReliefLevels, SettingsRecord,
 };

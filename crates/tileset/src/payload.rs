@@ -8,6 +8,7 @@ mod builder;
 mod decode;
 #[cfg(feature = "write")]
 mod encode;
+mod of_package;
 mod sizes;
 mod summary;
 

@@ -64,6 +64,15 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// Places the TIN of tile `id`, its heights in steps of `quantum_m`.
+    ///
+    /// # Panics
+    /// When the tile's level is beyond the frame's finest one.
+    #[must_use]
+    pub fn of_tile(tin: &Tin, frame: &GridFrame, id: TileId, quantum_m: f64) -> Self {
+        Self::new(tin, Placement::of_tile(frame, id, quantum_m))
+    }
+
     /// Places `tin` on the lattice.
     #[must_use]
     pub fn new(tin: &Tin, placement: Placement) -> Self {

@@ -90,7 +90,7 @@ impl Seam {
     pub fn covered(&self, areas: &[AreaRecord]) -> BTreeMap<AreaObject, Vec<Stretch>> {
         let mut covered: BTreeMap<AreaObject, Vec<Stretch>> = BTreeMap::new();
         for area in areas {
-            for ring in area.polygons.iter().flat_map(|part| &part.rings) {
+            for ring in area.rings() {
                 let next = ring.iter().cycle().skip(1);
                 for (&a, &b) in ring.iter().zip(next) {
                     if let (Some(a), Some(b)) = (self.along(a), self.along(b)) {

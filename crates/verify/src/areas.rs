@@ -60,7 +60,7 @@ fn look_at(package: &FilePackage, id: TileId) -> OfTile {
             format!("a ring of {} on tile {id}", area.object)
         });
     }
-    let points = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
+    let points = areas.iter().flat_map(AreaRecord::rings);
     let bytes = payload_sizes(&payload, id).map_or(0, |sizes| sizes.areas.stored);
     let points = points.map(|ring| ring.len() as u64).sum();
     found.counts = SectionOfTile { parts: areas.len() as u64, points, bytes };

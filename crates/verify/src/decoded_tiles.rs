@@ -9,7 +9,7 @@ use std::{
 use corniche_drape::DrapedVertex;
 use corniche_geom::{LatticePoint, TileId};
 use corniche_tileset::{
-    FilePackage, PayloadSizes, Relief, Sections, Terrain, TilePayload, decode, payload_sizes,
+    FilePackage, PayloadSizes, Relief, Sections, Terrain, TilePayload, payload_sizes,
 };
 use corniche_tin::{Tin, TinVertex};
 use corniche_work::Recent;
@@ -108,21 +108,16 @@ fn read_whole(package: &FilePackage, id: TileId) -> Result<(TilePayload, Payload
     let bytes = match package.tile(id) {
         Ok(Some(bytes)) => bytes,
         Ok(None) => return Err(format!("tile {id} is listed but not there")),
-        Err(error) => return Err(chain(&error)),
+        Err(error) => return Err(with_causes(&error)),
     };
-    let quantum_m = manifest.vertical.quantum_m;
-    decode(&bytes, id, &manifest.frame, quantum_m, Sections::ALL)
+    manifest
+        .decode(&bytes, id, Sections::ALL)
         .and_then(|payload| Ok((payload, payload_sizes(&bytes, id)?)))
-        .map_err(|error| chain(&error))
+        .map_err(|error| with_causes(&error))
 }
 
 /// An error with its causes, on one line.
-fn chain(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut source = error.source();
-    while let Some(cause) = source {
-        text = format!("{text}: {cause}");
-        source = cause.source();
-    }
-    text
+fn with_causes(error: &dyn std::error::Error) -> String {
+    let causes = std::iter::successors(error.source(), |cause| (*cause).source());
+    causes.fold(error.to_string(), |said, cause| format!("{said}: {cause}"))
 }

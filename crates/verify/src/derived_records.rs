@@ -72,7 +72,7 @@ fn texts(manifest: &Manifest, findings: &mut Findings) {
             format!("{:?} is an input of kind {:?}", input.name, input.kind)
         });
     }
-    let has_roads = manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input));
+    let has_roads = manifest.has_extract();
     let credits = manifest.attribution.iter().any(|text| text == corniche_osm::ATTRIBUTION);
     look(credits || !has_roads, &|| {
         format!("no credit for the extract: {}", manifest.attribution.join("; "))

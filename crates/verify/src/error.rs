@@ -11,7 +11,6 @@ use corniche_spec::{
 };
 use corniche_store::{LackOfRoom, StoreError};
 use corniche_tileset::{OpenError, SourceError};
-use corniche_work::Interrupted;
 
 /// Why a package could not be verified.
 #[derive(Debug, thiserror::Error)]
@@ -95,11 +94,7 @@ pub enum VerifyError {
 
 corniche_dem::from_dem_errors!(VerifyError);
 
-impl From<Interrupted> for VerifyError {
-    fn from(_: Interrupted) -> Self {
-        Self::Interrupted
-    }
-}
+corniche_work::from_interrupted!(VerifyError);
 
 impl From<GroundError> for VerifyError {
     fn from(error: GroundError) -> Self {

@@ -80,13 +80,7 @@ fn positions(
     let data = manifest.whole_data_bounds();
     let projection = crs.projection(manifest.area_deg())?;
     // Scales are recorded at the corners of files, which may lie up to a cell beyond the outermost nodes.
-    let [east_m, north_m] = manifest.frame.cell().to_array();
-    let files = Bounds {
-        min_x: data.min_x - east_m,
-        min_y: data.min_y - north_m,
-        max_x: data.max_x + east_m,
-        max_y: data.max_y + north_m,
-    };
+    let files = data.expanded(manifest.frame.cell().to_array());
     let scales = crs.scales(&grid(files), manifest.area_deg())?;
     check_scales(manifest, &scales, findings);
     rectangles(manifest, &projection, findings);

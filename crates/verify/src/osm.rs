@@ -150,11 +150,11 @@ pub(crate) fn check_inputs(
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<Vec<PathBuf>, VerifyError> {
-    if !manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input)) {
+    if !manifest.has_extract() {
         return Err(VerifyError::NoExtract);
     }
     let given = inputs.hash(observer)?;
-    let extracts = || manifest.inputs.iter().filter(|input| InputKind::Osm.is_of(input));
+    let extracts = || manifest.inputs_of(InputKind::Osm);
     // By content, not by name or order: files may have been renamed.
     let in_order = |records: &mut dyn Iterator<Item = &InputRecord>| {
         let mut records: Vec<InputRecord> = records.cloned().collect();

@@ -16,8 +16,8 @@ use corniche_spec::{Observer, settings_record};
 use corniche_store::Artifacts;
 use corniche_tileset::{
     AreaRecord, FilePackage, LineRecord, Manifest, Section, SpanRun, decode_areas, decode_lines,
-    decode_spans,
 };
+use serde::Serialize;
 
 use super::{
     checks::{CheckId, Findings, as_json},
@@ -60,17 +60,14 @@ pub(crate) fn compare_areas(
         recorded: |payload: &[u8], id| decode_areas(payload, id, frame).ok(),
         expected: |section: Section, id| section.areas(id, frame).ok(),
         name: |area: &AreaRecord| {
-            let rings = area.polygons.iter().flat_map(|part| &part.rings);
-            let points: usize = rings.map(Vec::len).sum();
+            let points: usize = area.rings().map(Vec::len).sum();
             format!("{} {} with {points} points", area.class, area.object)
         },
     };
     compare(package, store, threads, &how, findings, observer)?;
     let found = AreaTotals::get(how.layer, store)?.map(|totals| totals.counts());
-    let recorded = package.manifest().areas.as_ref().map(|areas| areas.counts.clone());
-    findings.look(CheckId::OsmAreaCounts, found == recorded, || {
-        format!("{} are recorded, {} are in the extract", as_json(&recorded), as_json(&found))
-    });
+    let recorded = package.manifest().areas.as_ref().map(|areas| &areas.counts);
+    look_at_counts(CheckId::OsmAreaCounts, recorded, found.as_ref(), findings);
     Ok(())
 }
 
@@ -95,10 +92,8 @@ pub(crate) fn compare_lines(
     };
     compare(package, store, threads, &how, findings, observer)?;
     let found = LineTotals::get(how.layer, store)?.map(|totals| totals.counts());
-    let recorded = package.manifest().lines(layer).map(|of| of.counts.clone());
-    findings.look(checks.osm_counts, found == recorded, || {
-        format!("{} are recorded, {} are in the extract", as_json(&recorded), as_json(&found))
-    });
+    let recorded = package.manifest().lines(layer).map(|of| &of.counts);
+    look_at_counts(checks.osm_counts, recorded, found.as_ref(), findings);
     Ok(())
 }
 
@@ -128,7 +123,7 @@ pub(crate) fn compare_spans(
     let how = HowCompared {
         layer: SectionLayer::Spans,
         check: CheckId::OsmSpans,
-        recorded: |payload: &[u8], id| decode_spans(payload, id, frame, quantum_m).ok(),
+        recorded: |payload: &[u8], id| manifest.decode_spans(payload, id).ok(),
         expected: |section: Section, id| section.spans(id, frame).ok(),
         name: |run: &SpanRun| {
             format!("a run of way {} with {} points", run.way_id, run.points.len())
@@ -136,10 +131,20 @@ pub(crate) fn compare_spans(
     };
     compare(package, of.store, threads, &how, findings, observer)?;
     let recorded = manifest.spans.as_ref().map(|spans| &spans.counts);
-    findings.look(CheckId::OsmSpanCounts, recorded == Some(&counts), || {
-        format!("{} are recorded, {} are in the extract", as_json(&recorded), as_json(&counts))
-    });
+    look_at_counts(CheckId::OsmSpanCounts, recorded, Some(&counts), findings);
     Ok(())
+}
+
+/// Looks whether the counts of a layer are those of the extract.
+fn look_at_counts<T: PartialEq + Serialize>(
+    check: CheckId,
+    recorded: Option<&T>,
+    found: Option<&T>,
+    findings: &mut Findings,
+) {
+    findings.look(check, found == recorded, || {
+        format!("{} are recorded, {} are in the extract", as_json(&recorded), as_json(&found))
+    });
 }
 
 /// How the objects of a layer are compared: what a payload has of it, what a section has that was made anew, and what an object is called.

@@ -12,7 +12,6 @@ use corniche_pieces::roads::{
 use corniche_roads::RoadAttributes;
 use corniche_spec::{levels::Levels, true_lengths::TrueLengths};
 use corniche_tileset::TilePayload;
-use corniche_tin::{Placement, Surface};
 
 use super::{
     checks::{CheckId, Findings},
@@ -66,8 +65,7 @@ pub(crate) fn look_at(laying: &Laying<'_>, id: TileId, pieces: &TilePieces) -> F
         }
         return found;
     };
-    let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
-    let surface = Surface::new(&terrain.tin, placement);
+    let surface = manifest.surface(id, &terrain.tin);
     let owned = laying.owned_borders(id, !pieces.roads.is_empty());
     let (clip, spans, lengths) = (clip_of(manifest), laying.spans, laying.lengths);
     let on = TileToLayOn { id, surface: &surface, owned, clip, spans, lengths };

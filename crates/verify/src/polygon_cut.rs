@@ -87,7 +87,7 @@ impl Cut<'_> {
     /// ```
     fn holds_area(&self, area: &AreaRecord) -> bool {
         let outlines = || {
-            let rings = area.polygons.iter().flat_map(|part| &part.rings);
+            let rings = area.rings();
             rings.flat_map(|ring| ring.iter().copied().zip(ring.iter().copied().cycle().skip(1)))
         };
         if !outlines().all(|(from, to)| self.holds(from, to)) {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use corniche_geom::{GridFrame, TileId};
 use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_tileset::{Manifest, TilePayload};
-use corniche_tin::{Placement, Surface, Tin};
+use corniche_tin::Tin;
 
 use super::{
     checks::{CheckId, Findings},
@@ -108,7 +108,7 @@ pub(crate) fn verify_on_tin(
     let mut found =
         OnTin { gaps: GapFigures { level: id.z(), ..GapFigures::default() }, ..OnTin::default() };
     // The surface turns stored lines into positions, as a reader does; the ground judges them by itself.
-    let surface = Surface::new(tin, Placement::of_tile(frame, id, manifest.vertical.quantum_m));
+    let surface = manifest.surface(id, tin);
     let place = TilePlace::of(frame, id);
     let [least_x, least_y] = manifest.scale.least;
     let step_m = frame.lattice_step_m() / least_x.min(least_y);

@@ -11,10 +11,10 @@ use corniche_roads::{FunctionalRoadClass, Structure};
 use corniche_spans::{SpanKind, SpanReason};
 use corniche_spec::Observer;
 use corniche_tileset::{
-    InputKind, Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, decode,
-    decode_spans, payload_sizes,
+    Manifest, Sections, SpanHeight, SpanPoint, SpanRun, TilePayload, payload_sizes,
 };
-use corniche_tin::{Placement, Surface};
+use corniche_tin::Surface;
+use corniche_work::locked;
 
 use super::{
     checks::{CheckId, Findings},
@@ -51,8 +51,7 @@ pub(crate) fn verify(
     let package = tiles.package;
     let manifest = package.manifest();
     let record = manifest.spans.as_ref();
-    let has_extract = manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input));
-    let is_wanted = manifest.settings.spans && has_extract;
+    let is_wanted = manifest.settings.spans && manifest.has_extract();
     findings.look(CheckId::SpanSums, record.is_some() == is_wanted, || {
         "spans are counted and were not asked for, or the other way round".to_owned()
     });
@@ -130,7 +129,7 @@ fn look_at(
     let Some(bytes) = tiles.package.tile(id).ok().flatten() else { return found };
     let manifest = tiles.package.manifest();
     let quantum_m = manifest.vertical.quantum_m;
-    let Ok(runs) = decode_spans(&bytes, id, &manifest.frame, quantum_m) else { return found };
+    let Ok(runs) = manifest.decode_spans(&bytes, id) else { return found };
     let of_structures = structures(&bytes, id, manifest);
     if runs.is_empty() && of_structures.is_empty() {
         return found;
@@ -142,14 +141,12 @@ fn look_at(
     } else {
         // Damage of other sections is told elsewhere.
         let wanted = Sections::TERRAIN.and(Sections::ROADS_GEO);
-        let read = decode(&bytes, id, &manifest.frame, quantum_m, wanted);
-        let Ok(read) = read else { return found };
+        let Ok(read) = manifest.decode(&bytes, id, wanted) else { return found };
         alone = read;
         &alone
     };
     let Some(terrain) = &payload.terrain else { return found };
-    let placement = Placement::of_tile(&manifest.frame, id, quantum_m);
-    let surface = Surface::new(&terrain.tin, placement);
+    let surface = manifest.surface(id, &terrain.tin);
     let lines = lines_of_structures(payload, &of_structures, &surface);
     let bounds = manifest.frame.tile_lattice_bounds(id);
     put_ends((id, &bounds), &lines, &runs, ends);
@@ -176,7 +173,7 @@ fn look_at(
             Ok(all) => {
                 let reversed = reversed(all, least_m, &mut found.findings);
                 let reversed = reversed.into_iter().map(|crossing| (id, crossing));
-                crossings.lock().unwrap_or_else(PoisonError::into_inner).extend(reversed);
+                locked(crossings).extend(reversed);
             }
             Err(error) => found.findings.look(CheckId::SpanOrder, false, || {
                 format!("tile {id}: more of its runs lie over each other than any writer has made: {error}")
@@ -220,8 +217,7 @@ type Lines = BTreeMap<(i64, FunctionalRoadClass, bool), WayLines>;
 
 /// The ways of a tile that are bridges or tunnels, with their layers.
 fn structures(bytes: &[u8], id: TileId, manifest: &Manifest) -> BTreeMap<i64, (Structure, i8)> {
-    let quantum_m = manifest.vertical.quantum_m;
-    let read = decode(bytes, id, &manifest.frame, quantum_m, Sections::ATTRIBUTES);
+    let read = manifest.decode(bytes, id, Sections::ATTRIBUTES);
     let records = read.map(|payload| payload.attributes).unwrap_or_default();
     let ways = records
         .into_iter()
@@ -253,25 +249,22 @@ fn put_ends(
     all: &Mutex<EndsByPlace>,
 ) {
     let mut own: BTreeMap<BorderEnd, Option<i64>> = BTreeMap::new();
-    let is_on_border = |at: &LatticePoint| {
-        at.u == bounds.min.u || at.u == bounds.max.u || at.v == bounds.min.v || at.v == bounds.max.v
-    };
     for (&(way_id, ..), own_lines) in lines {
         for &[u, v] in own_lines.ends.iter().flatten() {
             let at = LatticePoint::new(u.round() as i64, v.round() as i64);
-            if is_on_border(&at) {
+            if bounds.has_on_border(at) {
                 own.entry((id.z(), way_id, at)).or_default();
             }
         }
     }
     for run in runs {
         for end in [run.points.first(), run.points.last()].into_iter().flatten() {
-            if let (SpanHeight::Steps(steps), true) = (end.height, is_on_border(&end.at)) {
+            if let (SpanHeight::Steps(steps), true) = (end.height, bounds.has_on_border(end.at)) {
                 own.insert((id.z(), run.way_id, end.at), Some(steps));
             }
         }
     }
-    let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut all = locked(all);
     for (place, height) in own {
         all.entry(place).or_default().push((id, height));
     }

@@ -5,7 +5,6 @@
 use glam::DVec3;
 
 use crate::{camera::WorldBox, tiles::TileGeometry};
-use corniche_geom::Bounds;
 
 /// Where a ray meets the ground, or a bridge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -130,13 +129,7 @@ fn world_box(tile: &TileGeometry, vertical_scale: f64) -> Option<WorldBox> {
     // Some slack, because positions were rounded to f32 and triangles are enlarged.
     let [east_m, north_m] = tile.size_m;
     let slack_m = 2.0 * SLACK * (east_m.max(north_m) + high_m - low_m);
-    let Bounds { min_x, min_y, max_x, max_y } = tile.plan_bounds();
-    let plan = Bounds {
-        min_x: min_x - slack_m,
-        min_y: min_y - slack_m,
-        max_x: max_x + slack_m,
-        max_y: max_y + slack_m,
-    };
+    let plan = tile.plan_bounds().expanded([slack_m; 2]);
     Some(WorldBox::new(plan, [low_m - slack_m, high_m + slack_m]))
 }
 

@@ -8,6 +8,7 @@
 pub(crate) mod areas;
 mod blocks;
 mod decoder;
+mod distance;
 mod drawn_area;
 mod geometry;
 mod ground_mesh;
@@ -51,6 +52,10 @@ pub use self::{
     store::{MOST_LOADERS, TileStore},
 };
 pub(crate) use self::{
+    distance::distance, shading_slopes::ShadingSlopes, shares_in::shares_in,
+    store::MOST_SLOPES_ABOVE,
+};
+pub(crate) use self::{
     geometry::{WideWay, plan_around},
     ground_mesh::{GroundMesh, GroundVertex},
     plan_scale::PlanScale,
@@ -58,7 +63,4 @@ pub(crate) use self::{
         BadRoads, Bed, GroundLine, InNet, NearHeights, OPEN_M, OffGround, RoadEnd,
         dash_of_segment_m,
     },
-};
-pub(crate) use self::{
-    shading_slopes::ShadingSlopes, shares_in::shares_in, store::MOST_SLOPES_ABOVE,
 };

@@ -2,11 +2,13 @@
 //!
 //! This crate never knows what the work is.
 
+mod locked;
 mod observer;
 mod recent;
 mod stage;
 pub mod workers;
 
+pub use locked::locked;
 pub use observer::{Interrupted, Observer, Silent};
 pub use recent::Recent;
 pub use stage::{Stage, Unit};

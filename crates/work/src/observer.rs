@@ -8,6 +8,18 @@ use crate::Stage;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Interrupted;
 
+/// Lets an error that has a variant `Interrupted` be made of [`Interrupted`].
+#[macro_export]
+macro_rules! from_interrupted {
+    ($error:ty) => {
+        impl From<$crate::Interrupted> for $error {
+            fn from(_: $crate::Interrupted) -> Self {
+                Self::Interrupted
+            }
+        }
+    };
+}
+
 /// What work reports to its caller, and how the caller stops it.
 pub trait Observer: Sync {
     /// A stage begins; `total` is how many of its [`Unit`](crate::Unit)s it will count up to, where that is known. Stages do not overlap.

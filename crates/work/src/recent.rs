@@ -2,8 +2,10 @@
 
 use std::{
     collections::BTreeMap,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{Arc, Mutex},
 };
+
+use crate::locked;
 
 /// What an entry takes beside what it holds, about.
 const ENTRY_BYTES: u64 = 64;
@@ -112,11 +114,6 @@ impl<K: Copy + Ord, V> Kept<K, V> {
         };
         gone.into_iter().filter_map(given).collect()
     }
-}
-
-/// What is behind a lock is whole also after a thread ended in the middle of its work: it is set at once.
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]

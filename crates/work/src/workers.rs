@@ -6,7 +6,7 @@ use std::{
     thread,
 };
 
-use crate::{Interrupted, Observer, Stage};
+use crate::{Interrupted, Observer, Stage, locked};
 
 /// Works on each item with [`in_order`], and asks `observer` before each whether the run is cancelled.
 ///
@@ -158,7 +158,7 @@ pub fn in_order<S, R: Send, E: Send>(
     let queue: Mutex<Queue<R, E>> =
         Mutex::new(Queue { next: 0, done: BTreeMap::new(), written: 0, stop: false });
     let changed = Condvar::new();
-    let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
+    let lock = || locked(&queue);
     let worker = || {
         let mut state = None;
         loop {

@@ -69,12 +69,7 @@ pub(crate) fn with_bend(points: &[[f64; 2]]) -> Bounds {
         }
     }
     if !bounds.is_empty() {
-        bounds = Bounds {
-            min_x: bounds.min_x - bend,
-            min_y: bounds.min_y - bend,
-            max_x: bounds.max_x + bend,
-            max_y: bounds.max_y + bend,
-        };
+        bounds = bounds.expanded([bend; 2]);
     }
     bounds
 }

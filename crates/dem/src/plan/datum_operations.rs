@@ -57,7 +57,8 @@ impl Dem {
             let mosaic = self.mosaics.iter().find(|mosaic| mosaic.crs.label == label)?;
             mosaic.files.first().map(|file| self.sources[file.index].path.clone())
         };
-        let path: Option<PathBuf> = has_it(&refused.from).or_else(|| has_it(&refused.to));
+        let path: Option<PathBuf> =
+            has_it(&refused.record.from).or_else(|| has_it(&refused.record.to));
         Err(refused
             .refusal(path.map_or_else(|| "--crs".to_owned(), |path| path.display().to_string())))
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use corniche_geom::along;
 use corniche_gis::CrsOperation;
 use corniche_work::Recent;
 
@@ -116,7 +117,7 @@ impl SampleSurface<'_> {
             left.push([begin, end]);
             return Ok(None);
         }
-        let at = |share: f64| [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+        let at = |share: f64| along(from, to, share);
         let mut shares = vec![begin, end];
         for axis in 0..2 {
             let [one, other] = [at(begin)[axis], at(end)[axis]];

@@ -39,10 +39,13 @@ fn an_operation_is_told_with_the_accuracy_that_the_registry_has() {
     ] {
         let found = operations(epsg, corner, 30.0);
         let [only] = found.as_slice() else { panic!("{epsg}: {found:?}") };
-        assert!(only.name.starts_with(name), "{found:?}");
-        assert_eq!((only.from.as_str(), only.to.as_str()), (&*format!("EPSG:{epsg}"), "EPSG:4326"));
-        assert_eq!(only.accuracy_m, Some(accuracy_m), "{found:?}");
-        assert!(!only.is_ballpark && !only.must_be_allowed, "{found:?}");
+        assert!(only.record.operation.starts_with(name), "{found:?}");
+        assert_eq!(
+            (only.record.from.as_str(), only.record.to.as_str()),
+            (&*format!("EPSG:{epsg}"), "EPSG:4326")
+        );
+        assert_eq!(only.record.accuracy_m, Some(accuracy_m), "{found:?}");
+        assert!(!only.record.ballpark && !only.must_be_allowed, "{found:?}");
     }
 }
 
@@ -61,7 +64,7 @@ fn each_system_of_files_has_its_operations_once() {
         })
         .collect();
     let found = plan(&open(&files)).datum_operations;
-    let from: Vec<&str> = found.iter().map(|found| found.from.as_str()).collect();
+    let from: Vec<&str> = found.iter().map(|found| found.record.from.as_str()).collect();
     assert_eq!(from, ["EPSG:25832", "EPSG:25833"], "{found:?}");
 }
 
@@ -71,8 +74,8 @@ fn each_system_of_files_has_its_operations_once() {
 fn a_better_operation_whose_grid_is_missing_is_told() {
     let found = operations(26712, [420_000.0, 4_500_000.0], 30.0);
     let [only] = found.as_slice() else { panic!("{found:?}") };
-    assert!(only.name.starts_with("NAD27 to WGS 84"), "{found:?}");
-    let accuracy_m = only.accuracy_m.unwrap();
+    assert!(only.record.operation.starts_with("NAD27 to WGS 84"), "{found:?}");
+    let accuracy_m = only.record.accuracy_m.unwrap();
     match &only.better {
         Some(better) => {
             assert!(better.accuracy_m < accuracy_m && !better.grids.is_empty(), "{found:?}");
@@ -112,7 +115,10 @@ fn a_local_datum_is_not_taken_for_wgs84_unless_that_is_allowed() {
         let asked = PlanOptions { crs: crs.map(str::to_owned), ..options() };
         let plan = dem.plan(&asked).unwrap();
         let found = &plan.datum_operations;
-        assert!(found.iter().any(|found| found.is_ballpark && found.must_be_allowed), "{found:?}");
+        assert!(
+            found.iter().any(|found| found.record.ballpark && found.must_be_allowed),
+            "{found:?}"
+        );
         let error = dem.refuse_ballpark(&plan).unwrap_err();
         check_words(&error, &["custom.vrt", "Custom", "--allow-ballpark", "-a_srs", "datum"]);
     }
@@ -128,7 +134,7 @@ fn a_datum_without_a_name_on_the_ellipsoid_of_grs80_is_told_and_not_refused() {
     let plan = plan(&dem);
     dem.refuse_ballpark(&plan).unwrap();
     let [only] = plan.datum_operations.as_slice() else { panic!("{:?}", plan.datum_operations) };
-    assert!(only.is_ballpark && only.accuracy_m.is_none());
+    assert!(only.record.ballpark && only.record.accuracy_m.is_none());
     assert!(only.warning().unwrap().contains("unknown accuracy"));
 }
 
@@ -151,5 +157,5 @@ fn a_dem_that_reaches_beyond_the_area_of_its_datum_stays_in_one_piece() {
         assert!(off_m < 0.01, "{at:?} is at {point:?}, {off_m} m off");
     }
     let found = crs.datum_operations(data, area).unwrap();
-    assert!(found.len() == 1 && !found[0].is_ballpark, "{found:?}");
+    assert!(found.len() == 1 && !found[0].record.ballpark, "{found:?}");
 }

@@ -2,13 +2,14 @@
 
 use std::{
     collections::HashMap,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex},
 };
 
 use corniche_dem::Reader;
 use corniche_geom::{NodeWindow, TILE_CELLS, TileId};
 use corniche_tileset::{FilePackage, SampleSums, Sections, Terrain};
 use corniche_tin::{TriangleBuckets, WindowPlacement, heights_m};
+use corniche_work::locked;
 
 use super::{file::Number, grid::BLOCK};
 use crate::error::{ElevationError, RasterError, TileError};
@@ -44,17 +45,17 @@ impl<'a> Tins<'a> {
     pub(crate) fn forget_north_of(&self, j: i64) {
         let frame = &self.package.manifest().frame;
         let side = TILE_CELLS * frame.stride(self.level);
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = locked(&self.kept);
         kept.retain(|id, _| frame.tile_corner(*id).j - side <= j);
     }
 
     /// The triangles of a tile; none where the package has no ground there.
     fn of_tile(&self, id: TileId) -> Result<Arc<Option<TriangleBuckets>>, TileError> {
         let slot = {
-            let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut kept = locked(&self.kept);
             Arc::clone(kept.entry(id).or_default())
         };
-        let mut slot = slot.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut slot = locked(&slot);
         if let Some(known) = &*slot {
             return Ok(Arc::clone(known));
         }

@@ -159,7 +159,7 @@ impl TileReading<'_> {
                     let (vertex, at) = (&mesh.vertices[corner as usize], on_lattice(corner));
                     // All vertices lie on the lattice.
                     let point = LatticePoint::new(at[0] as i64, at[1] as i64);
-                    let is_on_border = read::is_on_border(point, &tile);
+                    let is_on_border = tile.has_on_border(point);
                     acrosses.push(across(at, &tile));
                     corners.push(Corner {
                         at_m: local.of(frame.position_of_fraction_m(at), vertex.height_m),

@@ -111,10 +111,5 @@ pub fn export_mesh(
 fn ground_of(manifest: &Manifest, ids: &[TileId]) -> Option<Bounds> {
     // Tiles on the edge reach beyond the data.
     let tiles = ids.iter().map(|&id| read::data_part(manifest, id));
-    tiles.reduce(|one, other| Bounds {
-        min_x: one.min_x.min(other.min_x),
-        min_y: one.min_y.min(other.min_y),
-        max_x: one.max_x.max(other.max_x),
-        max_y: one.max_y.max(other.max_y),
-    })
+    tiles.reduce(|one, other| one.union(&other))
 }

@@ -8,12 +8,7 @@ use corniche_tin::{NO_TWIN, Surface};
 use corniche_work::Recent;
 
 use super::tiling::Nodes;
-use crate::{
-    bounds::{expanded, intersection},
-    error::QuantizedMeshError,
-    places::Places,
-    plane, read,
-};
+use crate::{error::QuantizedMeshError, places::Places, plane};
 
 /// How far beside a line edges are looked for that may cross it, as a share of its length: meridians and parallels bend in the package's CRS.
 const ROOM_BESIDE_LINES: f64 = 0.01;
@@ -32,7 +27,7 @@ impl<'a> Ground<'a> {
         let data = package.manifest().wgs84_bounds;
         // Sides of the data may bend a little beyond what was sampled of them.
         let margin = 0.001 + 0.02 * (data.max_x - data.min_x).max(data.max_y - data.min_y);
-        let around_deg = expanded(data, margin);
+        let around_deg = data.expanded([margin; 2]);
         Self { package, kept, places, around_deg }
     }
 
@@ -167,7 +162,7 @@ impl<'a> Ground<'a> {
         self.places.working_from_wgs84(&mut around)?;
         let known = around.iter().filter(|place| place.iter().all(|x| x.is_finite()));
         let bounds_m = Bounds::around(known);
-        let bounds_m = expanded(bounds_m, 0.02 * bounds_m.width().max(bounds_m.height()));
+        let bounds_m = bounds_m.expanded([0.02 * bounds_m.width().max(bounds_m.height()); 2]);
         let corners = [[bounds_m.min_x, bounds_m.max_y], [bounds_m.max_x, bounds_m.min_y]];
         let [Some(first), Some(last)] = corners.map(|corner| frame.snap(corner)) else {
             return Ok(());
@@ -196,7 +191,7 @@ impl<'a> Ground<'a> {
     fn near_parts(&self, [[west, south], [east, north]]: [[f64; 2]; 2]) -> Vec<Bounds> {
         let part = |turns: f64| {
             let [min_x, max_x] = [west, east].map(|lon| lon + 360.0 * turns);
-            intersection(Bounds { min_x, min_y: south, max_x, max_y: north }, self.around_deg)
+            Bounds { min_x, min_y: south, max_x, max_y: north }.intersection(&self.around_deg)
         };
         let parts = [-1.0, 0.0, 1.0].map(part);
         parts
@@ -265,7 +260,7 @@ impl<'a> Ground<'a> {
         let Manifest { frame, coordinates, .. } = manifest;
         let payload = self.package.payload(id, Sections::TERRAIN)?;
         let Some(terrain) = payload.and_then(|payload| payload.terrain) else { return Ok(None) };
-        let surface = read::surface_of(manifest, id, &terrain);
+        let surface = manifest.surface(id, &terrain.tin);
         let points = surface.points().iter().map(|point| point.in_steps());
         let positions: Vec<[f64; 2]> =
             points.map(|steps| frame.position_of_fraction_m(steps)).collect();

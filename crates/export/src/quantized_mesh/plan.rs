@@ -10,11 +10,7 @@ use super::{
     tiling::{FINEST, TerrainTile, Tiling},
     write_tiles::{has_cells_of, is_wide, mean_bytes, side_and_cell_m, with_ancestors},
 };
-use crate::{
-    bounds::{DegreeBounds, expanded},
-    error::QuantizedMeshError,
-    read,
-};
+use crate::{bounds::DegreeBounds, error::QuantizedMeshError, read};
 
 /// The most tiles of the finest level. Some hundred bytes are kept for each.
 const MOST_TILES: u64 = 4_000_000;
@@ -134,7 +130,7 @@ fn tiles_around_deg(
             });
         }
         let around = Bounds::around(&places);
-        found.push(expanded(around, 0.01 * around.width().max(around.height())));
+        found.push(around.expanded([0.01 * around.width().max(around.height()); 2]));
     }
     Ok(found)
 }

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, fmt::Write as _};
 
-use corniche_geom::LatticePoint;
+use corniche_geom::{DisjointSets, LatticePoint};
 use corniche_roads::FunctionalRoadClass;
 
 use super::graph::{NONE, PlaceOnLink, RoadGraph, ShortestWays};
@@ -205,11 +205,11 @@ impl Finder<'_> {
     /// beside it.
     fn matched(&self) -> Vec<MatchedRoad> {
         let graph = self.graph;
-        let mut sets: Vec<usize> = (0..graph.node_count()).collect();
+        let mut sets = DisjointSets::new(graph.node_count());
         let wanted = || (0..graph.edges.len()).filter(|&edge| graph.edges[edge].is_wanted);
         for edge in wanted() {
             let [one, other] = graph.edges[edge].ends;
-            unite(&mut sets, one, other);
+            sets.join(one, other);
         }
         // From all of them at once, over other roads: where two meet there is a gap between them.
         let starts: Vec<(usize, f64)> =
@@ -220,7 +220,7 @@ impl Finder<'_> {
             let gap_m = ways.far_m[one] + ways.far_m[other] + edge.weight_m(edge.length_m);
             if gap_m <= edge.weight_m(MOST_GAP_M) {
                 let [one, other] = [one, other].map(|node| starts[ways.from[node] as usize].0);
-                unite(&mut sets, one, other);
+                sets.join(one, other);
             }
         }
         let is_dead_end = |node: usize| self.wanted_at(node) == 1;
@@ -228,12 +228,12 @@ impl Finder<'_> {
             starts.iter().map(|(node, _)| *node).filter(|&node| is_dead_end(node)).collect();
         for node in ends {
             for place in graph.near(self.place_deg(node), BESIDE_M) {
-                unite(&mut sets, node, graph.edges[place.edge].ends[0]);
+                sets.join(node, graph.edges[place.edge].ends[0]);
             }
         }
         let mut roads: Vec<(usize, MatchedRoad)> = Vec::new();
         let mut by_set: Vec<(usize, usize)> =
-            wanted().map(|edge| (root(&mut sets, graph.edges[edge].ends[0]), edge)).collect();
+            wanted().map(|edge| (sets.first_of(graph.edges[edge].ends[0]), edge)).collect();
         by_set.sort_unstable();
         for own in by_set.chunk_by(|one, other| one.0 == other.0) {
             let edges: Vec<usize> = own.iter().map(|(_, edge)| *edge).collect();
@@ -364,20 +364,6 @@ impl Finder<'_> {
         }
         points
     }
-}
-
-/// The set of a node, as the smallest of its nodes.
-fn root(sets: &mut [usize], mut node: usize) -> usize {
-    while sets[node] != node {
-        sets[node] = sets[sets[node]];
-        node = sets[node];
-    }
-    node
-}
-
-fn unite(sets: &mut [usize], one: usize, other: usize) {
-    let (one, other) = (root(sets, one), root(sets, other));
-    sets[one.max(other)] = one.min(other);
 }
 
 /// So many ids of a road are written.

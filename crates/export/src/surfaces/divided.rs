@@ -11,7 +11,7 @@ use super::{
     ribbon::Ribbon,
     slab::{Slab, SlabLabels},
 };
-use crate::{error::SurfaceError, read::surface_of};
+use crate::error::SurfaceError;
 
 /// What a triangle is a surface of.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -44,7 +44,7 @@ impl Divided {
         lines: Option<&TileLines<'_>>,
     ) -> Result<Option<Self>, SurfaceError> {
         let frame = &manifest.frame;
-        let surface = surface_of(manifest, id, terrain);
+        let surface = manifest.surface(id, &terrain.tin);
         if surface.triangles().is_empty() {
             return Ok(None);
         }

@@ -3,7 +3,7 @@
 use std::{collections::HashMap, sync::Arc};
 
 use corniche_geom::{LatticePoint, Polyline, TileId, Work};
-use corniche_roads::{FunctionalRoadClass, MetNodes, RoadAttributes, Structure};
+use corniche_roads::{FunctionalRoadClass, RoadAttributes, Structure};
 use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Manifest};
 use corniche_work::Recent;
@@ -247,17 +247,9 @@ fn simplify(lines: &mut [TileLine], tolerance_steps: f64) {
     for line in lines.iter_mut().filter(|line| line.stretch.deck_m.is_none()) {
         let Ok(whole) = Polyline::new(line.stretch.points.clone()) else { continue };
         let fixed = |(_, point): &(u32, &LatticePoint)| uses[*point] > 1;
-        let fixed = (0..).zip(whole.points()).filter(fixed).map(|(at, _)| at).collect();
-        let road = corniche_roads::Road {
-            way_id: line.way_id,
-            class: line.class,
-            attributes: (*line.attributes).clone(),
-            line: whole,
-            fixed,
-            node_ids: Vec::new(),
-            same_places: Vec::new(),
-            met: MetNodes::default(),
-        };
-        line.stretch.points = corniche_roads::simplify(&road, tolerance_steps).into_points();
+        let points = (0..).zip(whole.points());
+        let fixed: Vec<u32> = points.filter(fixed).map(|(at, _)| at).collect();
+        let thin = corniche_roads::simplify(&whole, &fixed, tolerance_steps);
+        line.stretch.points = thin.into_points();
     }
 }

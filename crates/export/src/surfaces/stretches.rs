@@ -12,7 +12,7 @@
 //!
 //! Between places at which the deck or the ground bends both are straight, so where a slab begins is a matter of one division.
 
-use corniche_geom::{LatticePoint, TooMuchWork, Work};
+use corniche_geom::{LatticePoint, TooMuchWork, Work, along};
 use corniche_roads::{Structure, slab_thickness_m};
 use corniche_tileset::{SpanHeight, SpanRun};
 
@@ -180,8 +180,7 @@ impl<'a> Line<'a> {
         let by = |axis: usize| (point[axis] - from[axis]) * (to[axis] - from[axis]);
         let share = ((by(0) + by(1)) / (whole * whole)).clamp(0.0, 1.0);
         let share = if share.is_finite() { share } else { 0.0 };
-        let place = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
-        (self.along[segment] + share * whole, distance(place, point))
+        (self.along[segment] + share * whole, distance(along(from, to, share), point))
     }
 
     /// Where the points of a run are along the line; `None` if it is a run of another line of the way.

@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use corniche_geom::{Bounds, Seam};
+use corniche_geom::{Bounds, DatumOperationRecord, Seam};
 
 use crate::CrsError;
 use crate::crs::horizontal::{Crs, GridCrs};
@@ -13,17 +13,8 @@ use crate::crs::proj_operations::{Listed, ProjOperation, operations};
 /// How positions come from one datum to another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DatumOperation {
-    /// The system they are in: "EPSG:…" where it has a code, else its name.
-    pub from: String,
-    /// The system they come to.
-    pub to: String,
-    /// PROJ's name for the operation.
-    pub name: String,
-    /// How accurate it is, metres; `None` where PROJ does not know it.
-    pub accuracy_m: Option<f64>,
-    /// Whether it takes one datum for another ("ballpark"), because PROJ knows nothing between
-    /// them.
-    pub is_ballpark: bool,
+    /// What packages record of it.
+    pub record: DatumOperationRecord,
     /// Whether a build must be allowed to use it: a ballpark operation of datums other than those
     /// of satellite positioning, which lie within metres of each other and share the ellipsoid of
     /// WGS84 or GRS80.
@@ -48,16 +39,16 @@ impl DatumOperation {
     /// how good it is.
     #[must_use]
     pub fn warning(&self) -> Option<String> {
-        let Self { from, to, name, .. } = self;
-        let accuracy = self.accuracy_text();
-        let begin = format!("positions go from {from} to {to} by PROJ's {name:?}, {accuracy}");
+        let DatumOperationRecord { from, to, operation, accuracy_m, ballpark: _ } = &self.record;
+        let accuracy = self.record.accuracy_text();
+        let begin = format!("positions go from {from} to {to} by PROJ's {operation:?}, {accuracy}");
         match &self.better {
             Some(BetterOperation { name, accuracy_m, grids }) => Some(format!(
                 "{begin}; {name:?}, accurate to {accuracy_m} m, needs a grid that is not installed: {} (projsync, in Debian in the package \
                  proj-bin, installs grids)",
                 grids.join(", ")
             )),
-            None if self.accuracy_m.is_none() => Some(format!(
+            None if accuracy_m.is_none() => Some(format!(
                 "{begin}: ground and roads may lie beside each other; if the true coordinate system is another, name it \
                  (gdal_edit.py -a_srs EPSG:n; for vectors ogr2ogr -a_srs)"
             )),
@@ -107,13 +98,15 @@ impl DatumOperation {
         let mut all: Vec<Self> = Vec::new();
         for &place in places_deg.iter().filter(|place| place[0].is_finite()) {
             let Some(found) = taken_at(place, &candidates).filter(changes_datum) else { continue };
-            if !all.iter().any(|other| other.name == found.name) {
+            if !all.iter().any(|other| other.record.operation == found.name) {
                 all.push(Self {
-                    from: operation.from.label.clone(),
-                    to: operation.to.label.clone(),
-                    name: found.name.clone(),
-                    accuracy_m: found.accuracy_m,
-                    is_ballpark: found.is_ballpark,
+                    record: DatumOperationRecord {
+                        from: operation.from.label.clone(),
+                        to: operation.to.label.clone(),
+                        operation: found.name.clone(),
+                        accuracy_m: found.accuracy_m,
+                        ballpark: found.is_ballpark,
+                    },
                     must_be_allowed: found.is_ballpark
                         && !(operation.from.is_on_wgs84_ellipsoid()
                             && operation.to.is_on_wgs84_ellipsoid()),
@@ -127,16 +120,10 @@ impl DatumOperation {
     /// The error for what has its datum, or would come to it.
     #[must_use]
     pub fn refusal(&self, whose: String) -> CrsError {
-        let between = Box::new([&self.from, &self.to, &self.name].map(Clone::clone));
+        let between = Box::new(
+            [&self.record.from, &self.record.to, &self.record.operation].map(Clone::clone),
+        );
         CrsError::Ballpark { whose, between }
-    }
-
-    /// Its accuracy in words.
-    fn accuracy_text(&self) -> String {
-        self.accuracy_m.map_or_else(
-            || "of unknown accuracy".to_owned(),
-            |accuracy_m| format!("accurate to {accuracy_m} m"),
-        )
     }
 }
 

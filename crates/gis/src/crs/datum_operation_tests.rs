@@ -86,11 +86,13 @@ fn only_a_more_accurate_operation_that_lacks_a_grid_is_better() {
 #[test]
 fn a_warning_names_the_grid_or_says_that_nothing_is_known() {
     let plain = DatumOperation {
-        from: "EPSG:4267".to_owned(),
-        to: "EPSG:4326".to_owned(),
-        name: "NAD27 to WGS 84 (6)".to_owned(),
-        accuracy_m: Some(7.0),
-        is_ballpark: false,
+        record: DatumOperationRecord {
+            from: "EPSG:4267".to_owned(),
+            to: "EPSG:4326".to_owned(),
+            operation: "NAD27 to WGS 84 (6)".to_owned(),
+            accuracy_m: Some(7.0),
+            ballpark: false,
+        },
         must_be_allowed: false,
         better: None,
     };
@@ -105,6 +107,7 @@ fn a_warning_names_the_grid_or_says_that_nothing_is_known() {
     {
         assert!(told.contains(word), "{told}");
     }
-    let told = DatumOperation { accuracy_m: None, ..plain }.warning().unwrap();
+    let record = DatumOperationRecord { accuracy_m: None, ..plain.record.clone() };
+    let told = DatumOperation { record, ..plain }.warning().unwrap();
     assert!(told.contains("unknown accuracy") && told.contains("-a_srs"), "{told}");
 }

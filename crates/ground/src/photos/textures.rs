@@ -44,10 +44,8 @@ pub fn make_finest(
         rasters::put(store, id, &Texels::empty(0, 0))
     };
     // A rectangle with the border: it is below 8 of 256 texels on each side.
-    let mut bounds = textures.frame.tile_bounds(id);
-    let (east_m, north_m) = (bounds.width() / 32.0, bounds.height() / 32.0);
-    bounds.include([bounds.min_x - east_m, bounds.min_y - north_m]);
-    bounds.include([bounds.max_x + east_m, bounds.max_y + north_m]);
+    let tile = textures.frame.tile_bounds(id);
+    let bounds = tile.expanded([tile.width() / 32.0, tile.height() / 32.0]);
     if !photos.grid.touches(&bounds) {
         return none();
     }

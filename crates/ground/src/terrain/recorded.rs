@@ -7,7 +7,7 @@ use corniche_geom::TileId;
 use corniche_gis::{CrsError, DemProjection, RecordedCrs};
 use corniche_spec::{TerrainSettings, open_package, settings_record};
 use corniche_tileset::{
-    FilePackage, InputKind, InputRecord, Manifest, ReadError, Relief, Sections, Terrain, decode,
+    FilePackage, InputKind, InputRecord, Manifest, ReadError, Relief, Sections, Terrain,
 };
 
 use super::recorded_grid;
@@ -40,7 +40,7 @@ impl TerrainRecord {
 /// The credits of a package that were given: without the last one where that is what its extract called for.
 fn own_credits(manifest: &Manifest) -> Vec<String> {
     let mut credits = manifest.attribution.clone();
-    let has_roads = manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input));
+    let has_roads = manifest.has_extract();
     if has_roads && credits.last().is_some_and(|last| last == corniche_osm::ATTRIBUTION) {
         credits.pop();
     }
@@ -123,10 +123,8 @@ impl RecordedTerrain {
     pub fn ground(&self, id: TileId) -> Result<Option<(Vec<u8>, Terrain)>, TerrainError> {
         let failed = |source| TerrainError::Tile { path: self.path().to_path_buf(), source };
         let Some(bytes) = self.package.tile(id).map_err(failed)? else { return Ok(None) };
-        let manifest = self.manifest();
-        let quantum_m = manifest.vertical.quantum_m;
-        let payload = decode(&bytes, id, &manifest.frame, quantum_m, Sections::TERRAIN)
-            .map_err(|error| failed(ReadError::from(error)))?;
+        let payload = self.manifest().decode(&bytes, id, Sections::TERRAIN);
+        let payload = payload.map_err(|error| failed(ReadError::from(error)))?;
         match payload.terrain.filter(|terrain| !terrain.tin.is_empty()) {
             Some(terrain) => Ok(Some((bytes, terrain))),
             None => Err(self.damaged(&format!("tile {id} has no ground"))),
@@ -138,9 +136,7 @@ impl RecordedTerrain {
     /// # Errors
     /// See [`TerrainError`].
     pub fn relief(&self, id: TileId, payload: &[u8]) -> Result<Relief, TerrainError> {
-        let manifest = self.manifest();
-        let quantum_m = manifest.vertical.quantum_m;
-        let found = decode(payload, id, &manifest.frame, quantum_m, Sections::RELIEF);
+        let found = self.manifest().decode(payload, id, Sections::RELIEF);
         let found = found.map_err(|error| TerrainError::Tile {
             path: self.path().to_path_buf(),
             source: ReadError::from(error),

@@ -262,7 +262,7 @@ fn put_section(
     splitting: &PlanSplitting<'_>,
     store: &dyn Artifacts,
 ) -> Result<(), ExtractError> {
-    let rings = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
+    let rings = areas.iter().flat_map(AreaRecord::rings);
     let counts = [areas.len() as u64, rings.map(|ring| ring.len() as u64).sum()];
     TileSection::put((SectionLayer::Areas, tile), store, counts, |id| {
         encode_areas(id, splitting.frame, splitting.step(id.z()), areas)

@@ -10,6 +10,7 @@ use corniche_osm::{OnProgress, ReadOsmError, ReadRequest};
 use corniche_roads::FrcTable;
 use corniche_spec::{Observer, true_areas::degrees_ring_m2};
 use corniche_store::Scratch;
+use corniche_work::locked;
 
 use super::kept::not_read;
 use crate::ExtractError;
@@ -47,7 +48,7 @@ impl PlacedReading<'_> {
         let place = |positions_deg: &[[f64; 2]]| {
             place(positions_deg, self.frame, self.projection).unwrap_or_else(|error| {
                 // The points are not at fault: the run fails with this error after reading.
-                *unprojected.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                *locked(&unprojected) = Some(error);
                 vec![None; positions_deg.len()]
             })
         };

@@ -6,7 +6,7 @@ use corniche_areas::{ClassedLayer, LineClass, line_text};
 use corniche_drape::{ClippedPart, clip_region};
 use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_osm::{ClassedLine, LineSummary};
-use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, simplify};
+use corniche_roads::simplify;
 use corniche_spec::{
     artifacts::damaged, levels::Levels, tiles_near::for_each_tile_near, true_lengths::TrueLengths,
 };
@@ -99,25 +99,10 @@ impl LineSplitting<'_> {
         } else {
             TOLERANCE_CELLS * frame.level_cell(level).shorter_m()
         };
-        let (Ok(line), Some(class)) =
-            (Polyline::new(object.points.clone()), FunctionalRoadClass::new(0))
-        else {
-            return Vec::new();
-        };
-        // Simplification looks at the line and its fixed points alone.
-        let road = Road {
-            way_id: object.way_id,
-            class,
-            attributes: RoadAttributes::default(),
-            line,
-            fixed: object.fixed.clone(),
-            node_ids: Vec::new(),
-            same_places: Vec::new(),
-            met: MetNodes::default(),
-        };
+        let Ok(line) = Polyline::new(object.points.clone()) else { return Vec::new() };
         let step = self.plan.step(level);
         let on_lattice = |part: i64| (part + step / 2).div_euclid(step) * step;
-        let simplified = simplify(&road, tolerance_m / frame.lattice_step_m());
+        let simplified = simplify(&line, &object.fixed, tolerance_m / frame.lattice_step_m());
         let points = simplified.points().iter();
         let mut points: Vec<LatticePoint> = points
             .map(|point| LatticePoint::new(on_lattice(point.u), on_lattice(point.v)))

@@ -244,15 +244,15 @@ struct LevelLine<'p> {
 impl<'p> LevelLine<'p> {
     fn new(part: &'p RoadPart<'_>, level: u8, levels: &Levels, spans: bool) -> Self {
         let road = &part.road;
-        let line = corniche_roads::simplify(road, levels.simplify_tolerance_steps(level));
+        let tolerance_steps = levels.simplify_tolerance_steps(level);
+        let line = corniche_roads::simplify(&road.line, &road.fixed, tolerance_steps);
         // On the finest level the line is the source line, not simplified.
         let is_finest = level == levels.frame().max_level();
         let is_span = spans && road.attributes.structure != Structure::Ground;
         let segments_um = match (is_finest, is_span) {
             (true, _) => Cow::Borrowed(&part.segments_um[..]),
             (false, true) => {
-                let kept =
-                    corniche_roads::kept_points(road, levels.simplify_tolerance_steps(level));
+                let kept = corniche_roads::kept_points(&road.line, &road.fixed, tolerance_steps);
                 Cow::Owned(simplified_um(&road.line, &part.segments_um, &kept))
             }
             (false, false) => Cow::Borrowed(&[][..]),

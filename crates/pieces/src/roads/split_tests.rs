@@ -82,7 +82,8 @@ fn lay_whole(on: &mut OnTile, road: &Road, ordinal: u32, world: &World, id: Tile
     let (levels, lengths, owned) = (&world.levels, world.lengths(), world.owned(id));
     let surface = world.surface(id);
     let bounds = levels.frame().tile_lattice_bounds(id);
-    let line = corniche_roads::simplify(road, levels.simplify_tolerance_steps(id.z()));
+    let line =
+        corniche_roads::simplify(&road.line, &road.fixed, levels.simplify_tolerance_steps(id.z()));
     let is_finest = id.z() == levels.frame().max_level();
     let segments_um = if is_finest { lengths.segments_um(&line) } else { Vec::new() };
     let (mut fate, mut lost) = (RoadFate::default(), RoadFate::default());
@@ -270,7 +271,8 @@ proptest! {
             for (ordinal, road) in (0..).zip(&roads) {
                 lay_whole(&mut wanted, road, ordinal, &world, id);
                 if pieces.roads.iter().any(|&(other, _)| other == ordinal) {
-                    let line = corniche_roads::simplify(road, world.levels.simplify_tolerance_steps(id.z()));
+                    let tolerance_steps = world.levels.simplify_tolerance_steps(id.z());
+                    let line = corniche_roads::simplify(&road.line, &road.fixed, tolerance_steps);
                     let sums = wanted.classes.entry(road.class.number()).or_default();
                     sums.source_vertices += points_in(&road.line, id, &world.levels);
                     sums.simplified_vertices += points_in(&line, id, &world.levels);

@@ -17,7 +17,7 @@ use corniche_spec::{
 use corniche_tileset::{
     OuterGround, SpanRun, encode_spans, limits::MAX_SPAN_POINTS, pmtiles_order,
 };
-use corniche_tin::{Placement, Surface, Tin};
+use corniche_tin::{Surface, Tin};
 use corniche_work::{Stage, workers};
 
 use super::{
@@ -150,8 +150,7 @@ impl SpanSolving<'_> {
         for (id, indices) in by_tile {
             self.observer.check()?;
             let Some(tin) = (self.tin)(id)? else { continue };
-            let placement = Placement::of_tile(self.of.frame, id, self.quantum_m);
-            let surface = Surface::new(&tin, placement);
+            let surface = Surface::of_tile(&tin, self.of.frame, id, self.quantum_m);
             for index in indices {
                 let located = surface.locate(points[index]);
                 let height_m =

@@ -8,24 +8,18 @@ use corniche_ground::{
 };
 use corniche_photo::PhotoReader;
 use corniche_spec::artifacts::Kind;
-use corniche_work::{Stage, workers};
+use corniche_work::Stage;
 
 use crate::{BuildError, context::Context};
 
 /// Reads the photos beneath and at `scope` that are not there yet, and makes the rasters from there up to the scope's own.
 pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
     let Some(photos) = context.opened.photo.files() else { return Ok(()) };
-    let store = context.store;
-    let mut ids = context.data().in_order_within(scope);
-    let all = ids.len();
-    ids.retain(|&id| !store.has(Kind::PhotoRaster.of_tile(id)));
-    workers::make_missing(
-        context.observer,
-        Stage::Photos,
-        context.threads(),
-        (&ids, all),
+    context.make_missing(
+        (Stage::Photos, Kind::PhotoRaster),
+        context.data().in_order_within(scope),
         || Ok(PhotoReader::new(&photos.grid)),
-        |reader, &id| textures::make_finest(context.textures(), photos, reader, id),
+        |reader, id| Ok(textures::make_finest(context.textures(), photos, reader, id)?),
     )?;
     make_rasters(context, scope)
 }

@@ -8,7 +8,7 @@ use corniche_ground::terrain::{
 };
 use corniche_spec::artifacts::Kind;
 use corniche_tileset::{Terrain, pmtiles_order};
-use corniche_work::{Recent, Stage, workers};
+use corniche_work::{Recent, Stage};
 
 use crate::{
     BuildError,
@@ -39,18 +39,9 @@ fn make_all(
     stage: Stage,
     mut ids: Vec<TileId>,
 ) -> Result<(), BuildError> {
-    let Context { store, observer, .. } = *context;
-    let all = ids.len();
-    ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
     ids.sort_unstable_by_key(|&id| pmtiles_order(id));
-    workers::make_missing(
-        observer,
-        stage,
-        context.threads(),
-        (&ids, all),
-        || Ok(()),
-        |(), &id| make_tile(context, borders, id),
-    )
+    let make = |(): &mut (), id| make_tile(context, borders, id);
+    context.make_missing((stage, Kind::Record), ids, || Ok(()), make)
 }
 
 fn make_tile(context: &Context<'_>, borders: &Borders<'_>, id: TileId) -> Result<(), BuildError> {

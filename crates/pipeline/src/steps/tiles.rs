@@ -5,7 +5,7 @@ use corniche_dem::{Dem, Reader};
 use corniche_geom::TileId;
 use corniche_ground::{heights::finest::FinestHeights, terrain::ground::GroundSource};
 use corniche_spec::artifacts::Kind;
-use corniche_work::{Stage, workers};
+use corniche_work::Stage;
 
 use super::{coarse_tiles, recorded_tiles, roads, top};
 use crate::{
@@ -42,18 +42,12 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
 
 fn make_finest(context: &Context<'_>, dem: &Dem, scope: TileId) -> Result<(), BuildError> {
     let step_m = top::height_step_m(context)?;
-    let Context { store, observer, .. } = *context;
-    let mut ids = context.data().in_order_within(scope);
-    let all = ids.len();
-    ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
     let grounds = Grounds::new(context);
-    workers::make_missing(
-        observer,
-        Stage::Tiles,
-        context.threads(),
-        (&ids, all),
+    context.make_missing(
+        (Stage::Tiles, Kind::Record),
+        context.data().in_order_within(scope),
         || Ok((dem, dem.reader(context.grid))),
-        |source, &id| make_tile(context, &grounds, source, id, step_m),
+        |source, id| make_tile(context, &grounds, source, id, step_m),
     )
 }
 

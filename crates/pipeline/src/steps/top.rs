@@ -6,7 +6,7 @@ use corniche_geom::TileId;
 use corniche_ground::heights::rasters;
 use corniche_spec::artifacts::{ArtifactError, Kind, damaged};
 use corniche_tileset::{pmtiles_order, tile_of_order};
-use corniche_work::{Stage, workers};
+use corniche_work::Stage;
 
 use super::photos;
 use crate::{
@@ -68,20 +68,16 @@ fn above_subtrees(context: &Context<'_>) -> Vec<TileId> {
 }
 
 /// Triangulates those of some coarse tiles of the data that are not there yet.
-pub(crate) fn make_tins(context: &Context<'_>, mut ids: Vec<TileId>) -> Result<(), BuildError> {
+pub(crate) fn make_tins(context: &Context<'_>, ids: Vec<TileId>) -> Result<(), BuildError> {
     if ids.is_empty() {
         return Ok(());
     }
     let (store, data) = (context.store, context.data());
-    let all = ids.len();
-    ids.retain(|&id| !store.has(Kind::Tin.of_tile(id)));
-    workers::make_missing(
-        context.observer,
-        Stage::CoarseTins,
-        context.threads(),
-        (&ids, all),
+    context.make_missing(
+        (Stage::CoarseTins, Kind::Tin),
+        ids,
         || Ok(()),
-        |(), &id| -> Result<(), BuildError> {
+        |(), id| {
             let meshed = match rasters::with_halo(store, &data, id, 1)? {
                 Some(heights) => mesh_tile(&heights, id, context.levels)?,
                 None => Meshed::default(),

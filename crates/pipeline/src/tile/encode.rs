@@ -20,7 +20,7 @@ use corniche_pieces::{
 use corniche_roads::FunctionalRoadClass;
 use corniche_spec::artifacts::Kind;
 use corniche_tileset::{EncodedTile, PayloadContext, PayloadSizes, Relief, Terrain, TilePayload};
-use corniche_tin::{Placement, Surface};
+use corniche_tin::Surface;
 
 use super::{
     mesh::Meshed,
@@ -46,8 +46,7 @@ pub(crate) fn with_ground(
     let mut laid = if pieces.roads.is_empty() {
         Laid::default()
     } else {
-        let placement = Placement::of_tile(frame, id, levels.quantum_m());
-        let surface = Surface::new(&meshed.tin, placement);
+        let surface = Surface::of_tile(&meshed.tin, frame, id, levels.quantum_m());
         let clip = context.clip();
         let spans = context.settings.roads.spans;
         let lengths = &context.lengths();

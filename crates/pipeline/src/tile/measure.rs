@@ -6,7 +6,7 @@ use corniche_dem::{Dem, Reader};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_ground::heights::finest::{FinestHeights, own_size};
 use corniche_tileset::SampleSums;
-use corniche_tin::{Placement, Surface, Tin, TriangleBuckets, WindowPlacement};
+use corniche_tin::{Surface, Tin, TriangleBuckets, WindowPlacement};
 use corniche_work::Recent;
 
 use super::{
@@ -172,7 +172,7 @@ impl Ground {
     pub(crate) fn new(context: &Context<'_>, id: TileId, tin: &Tin) -> Self {
         let quantum_m = context.levels.quantum_m();
         let surface = (!context.grid.nodes_are_samples())
-            .then(|| Surface::new(tin, Placement::of_tile(context.frame(), id, quantum_m)));
+            .then(|| Surface::of_tile(tin, context.frame(), id, quantum_m));
         let uses = 1 + u64::from(surface.is_some());
         Self {
             buckets: TriangleBuckets::new(tin, quantum_m),

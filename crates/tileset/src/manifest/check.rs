@@ -9,7 +9,7 @@ use corniche_roads::FrcTable;
 use corniche_settings::{MAX_MEASURE_M, MAX_NODATA};
 
 use crate::limits::MAX_PHOTO_LEVELS;
-use crate::manifest::contents::{AreasRecord, LinesRecord, Manifest, SpansRecord};
+use crate::manifest::contents::{AreasRecord, LineLevelRecord, LinesRecord, Manifest, SpansRecord};
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::credits::MOST_CREDITS_BYTES;
 use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
@@ -151,7 +151,7 @@ impl Manifest {
         let Some(LinesRecord { counts, levels }) = self.lines(layer) else { return Ok(()) };
         let lengths_um = counts.kept.iter().map(|kept| kept.length_um);
         check_sum(&format!("{}.counts.kept.length_um", layer.name()), lengths_um)?;
-        let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
+        let levels = levels.iter().map(LineLevelRecord::figures);
         let kept = counts.kept.iter().map(|kept| (kept.class, kept.ways));
         let is_class = |class| layer.class(class).is_some();
         self.check_layer(layer.name(), levels, kept, is_class, &counts.lost)
@@ -167,7 +167,7 @@ impl Manifest {
         for ground in outer_grounds {
             that(ground.height_m.is_finite(), "spans.outer_grounds", ground)?;
         }
-        let levels = levels.iter().map(|of| (of.level, [of.tiles, of.parts, of.points, of.bytes]));
+        let levels = levels.iter().map(LineLevelRecord::figures);
         check_sum("spans.counts", [counts.bridges_um, counts.tunnels_um])?;
         let kept = (0..).zip([counts.bridges, counts.tunnels, counts.crossings]);
         self.check_layer("spans", levels, kept, |_| true, &counts.reasons)

@@ -2,7 +2,8 @@
 
 use corniche_areas::ClassedLayer;
 use corniche_geom::{
-    Bounds, ClipRecord, CoordinateTable, GridFrame, LatticePoint, NodeIndex, ScaleRecord,
+    Bounds, ClipRecord, CoordinateTable, DatumOperationRecord, GridFrame, LatticePoint, NodeIndex,
+    ScaleRecord,
 };
 use corniche_settings::SettingsRecord;
 use serde::{Deserialize, Serialize};
@@ -181,23 +182,6 @@ pub struct VerticalRecord {
     pub range_m: [f64; 2],
 }
 
-/// How positions come from one datum to another: roads from WGS84 to the package, or elevation files to it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct DatumOperationRecord {
-    /// The system that positions are in: "EPSG:…" where it has a code, else its name.
-    pub from: String,
-    /// The system that they come to. The operation is also used the other way around.
-    pub to: String,
-    /// PROJ's name for the operation.
-    pub operation: String,
-    /// How accurate it is, metres; left out where PROJ does not know it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub accuracy_m: Option<f64>,
-    /// Whether one datum was taken for another, as PROJ knows nothing between them (`--allow-ballpark`); left out where not.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub ballpark: bool,
-}
-
 /// Whether heights have no step.
 fn is_no_step<Step: PartialOrd + Default>(step_m: &Step) -> bool {
     *step_m <= Step::default()
@@ -372,4 +356,12 @@ pub struct LineLevelRecord {
     pub points: u64,
     /// Stored bytes of their sections of the layer.
     pub bytes: u64,
+}
+
+impl LineLevelRecord {
+    /// Its level, and its numbers in the order of the fields.
+    #[must_use]
+    pub fn figures(&self) -> (u8, [u64; 4]) {
+        (self.level, [self.tiles, self.parts, self.points, self.bytes])
+    }
 }

@@ -16,7 +16,7 @@ use crate::package::source::{ByteSource, SourceError};
 use crate::package::tool_record::ToolRecord;
 use crate::tile_order::{pmtiles_order, tile_of_order};
 use crate::{
-    Manifest, Sections, TilePayload, decode,
+    Manifest, Sections, TilePayload,
     limits::{
         MAX_DIRECTORY_BYTES, MAX_DIRECTORY_DEPTH, MAX_KEPT_ENTRIES, MAX_METADATA_BYTES,
         MAX_PAYLOAD_BYTES, MAX_TILES,
@@ -165,7 +165,7 @@ impl<S: ByteSource> Package<S> {
         self.tile_for(id, Sections::ALL).await
     }
 
-    /// The same, without SV roads at its end where they are not wanted and the manifest tells how many bytes they are. [`decode`] takes it for these
+    /// The same, without SV roads at its end where they are not wanted and the manifest tells how many bytes they are. [`decode`](crate::decode) takes it for these
     /// sections.
     ///
     /// # Errors
@@ -211,8 +211,7 @@ impl<S: ByteSource> Package<S> {
         wanted: Sections,
     ) -> Result<Option<TilePayload>, ReadError> {
         let Some(bytes) = self.tile_for(id, wanted).await? else { return Ok(None) };
-        let Manifest { frame, vertical, .. } = &self.manifest;
-        Ok(Some(decode(&bytes, id, frame, vertical.quantum_m, wanted)?))
+        Ok(Some(self.manifest.decode(&bytes, id, wanted)?))
     }
 
     /// How many bytes the SV roads at the end of the tile at a place take, where the manifest tells.

@@ -4,7 +4,8 @@ use corniche_geom::{GridFrame, LatticePoint, TILE_NODES, TileId};
 use corniche_tin::Placement;
 
 use crate::manifest::check::is_height_quantum;
-use crate::payload::damage::Damage;
+use crate::payload::damage::{Damage, DecodeError};
+use crate::payload::envelope::{self, StoredSection};
 use crate::payload::terrain::record::Scale;
 
 /// What positions and heights in a payload are relative to.
@@ -16,6 +17,18 @@ pub(crate) struct Context {
 }
 
 impl Context {
+    /// Opens the payload of a tile, and tells what its numbers are relative to.
+    pub(crate) fn open<'b>(
+        bytes: &'b [u8],
+        id: TileId,
+        frame: &GridFrame,
+        quantum_m: f64,
+    ) -> Result<(Self, Vec<StoredSection<'b>>), DecodeError> {
+        let failed = |damage| DecodeError { tile: id, part: "header", damage };
+        let context = Self::new(id, frame, quantum_m).map_err(failed)?;
+        Ok((context, envelope::open_read(bytes, id).map_err(failed)?))
+    }
+
     pub(crate) fn new(id: TileId, frame: &GridFrame, quantum_m: f64) -> Result<Self, Damage> {
         if id.z() > frame.max_level() {
             return Err(Damage::Level { level: id.z(), finest: frame.max_level() });

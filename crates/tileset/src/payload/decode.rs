@@ -29,17 +29,12 @@ pub fn decode(
     quantum_m: f64,
     wanted: Sections,
 ) -> Result<TilePayload, DecodeError> {
-    let header = |damage| DecodeError { tile: id, part: "header", damage };
-    let context = Context::new(id, frame, quantum_m).map_err(header)?;
-    let sections = envelope::open_read(bytes, id).map_err(header)?;
+    let (context, sections) = Context::open(bytes, id, frame, quantum_m)?;
+    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
     if wanted == Sections::ALL {
-        envelope::check_unknown(&sections).map_err(|damage| DecodeError {
-            tile: id,
-            part: "section of an unknown kind",
-            damage,
-        })?;
+        envelope::check_unknown(&sections).map_err(failed("section of an unknown kind"))?;
     }
-    let inside = |kind: Kind| move |damage| DecodeError { tile: id, part: kind.name(), damage };
+    let inside = |kind: Kind| failed(kind.name());
     let read = |kind: Kind, section: Sections| {
         if !wanted.contains(section) {
             return Ok(None);

@@ -46,9 +46,8 @@ pub fn decode_spans(
     frame: &GridFrame,
     quantum_m: f64,
 ) -> Result<Vec<SpanRun>, DecodeError> {
+    let (context, sections) = Context::open(bytes, id, frame, quantum_m)?;
     let failed = |part| move |damage| DecodeError { tile: id, part, damage };
-    let context = Context::new(id, frame, quantum_m).map_err(failed("header"))?;
-    let sections = envelope::open_read(bytes, id).map_err(failed("header"))?;
     let inside = failed(Kind::Spans.name());
     let Some(section) = envelope::section(&sections, Kind::Spans).map_err(inside)? else {
         return Ok(Vec::new());

@@ -4,7 +4,6 @@ use corniche_geom::{GridFrame, TileId};
 
 use crate::payload::context::Context;
 use crate::payload::damage::DecodeError;
-use crate::payload::envelope;
 use crate::payload::section_kind::Kind;
 use crate::payload::terrain;
 use crate::payload::tile_payload::TerrainSummary;
@@ -21,11 +20,9 @@ pub fn terrain_summary(
     frame: &GridFrame,
     quantum_m: f64,
 ) -> Result<Option<TerrainSummary>, DecodeError> {
-    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
-    let context = Context::new(id, frame, quantum_m).map_err(failed("header"))?;
-    let sections = envelope::open_read(bytes, id).map_err(failed("header"))?;
-    let record = terrain::record_in(&sections, context.scale);
-    let record = record.map_err(failed(Kind::Terrain.name()))?;
+    let (context, sections) = Context::open(bytes, id, frame, quantum_m)?;
+    let failed = |damage| DecodeError { tile: id, part: Kind::Terrain.name(), damage };
+    let record = terrain::record_in(&sections, context.scale).map_err(failed)?;
     Ok(record.map(|record| TerrainSummary {
         geometric_error_m: record.geometric_error_m,
         height_range_m: record.height_range_m,

@@ -1,10 +1,11 @@
 //! The graphics device: how it is opened, what it can do, and how its faults are noticed.
 
 use std::sync::{
-    Arc, Mutex, PoisonError,
+    Arc, Mutex,
     atomic::{AtomicBool, Ordering},
 };
 
+use corniche_work::locked;
 use wgpu::Features;
 
 use super::{GpuError, ReadBackError, adapter::adapter};
@@ -42,7 +43,7 @@ impl Faults {
         let seen = Arc::clone(&faults);
         // Without a handler the process would end.
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            let mut first = seen.first.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut first = locked(&seen.first);
             first.get_or_insert_with(|| error.to_string());
         }));
         faults
@@ -147,14 +148,14 @@ impl Gpu {
     /// Whether there is a fault that [`Gpu::take_fault`] will tell.
     #[must_use]
     pub fn has_fault(&self) -> bool {
-        self.faults.first.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+        locked(&self.faults.first).is_some()
     }
 
     /// The first fault since this was asked last: memory ran out, or the renderer made a mistake. What was drawn since
     /// then cannot be trusted. Reading pixels back reports the same fault.
     #[must_use]
     pub fn take_fault(&self) -> Option<String> {
-        self.faults.first.lock().unwrap_or_else(PoisonError::into_inner).take()
+        locked(&self.faults.first).take()
     }
 
     /// Largest side of a picture in samples: the adapter's own limit.

@@ -6,8 +6,7 @@ use corniche_areas::ClassedLayer;
 use corniche_geom::{TileId, TooMuchWork};
 use corniche_styles::Style;
 use corniche_tileset::{
-    DecodeError, Manifest, Sections, SpanRun, decode, decode_areas, decode_lines, decode_photo,
-    decode_spans,
+    DecodeError, Manifest, Sections, SpanRun, decode_areas, decode_lines, decode_photo,
 };
 use serde::{Deserialize, Serialize};
 
@@ -141,7 +140,7 @@ impl TileDecoder {
         if manifest.spans.is_none() || !self.sections.contains(Sections::ATTRIBUTES) {
             return Ok(None);
         }
-        decode_spans(payload, id, &manifest.frame, manifest.vertical.quantum_m).map(Some)
+        manifest.decode_spans(payload, id).map(Some)
     }
 
     fn read(
@@ -152,7 +151,7 @@ impl TileDecoder {
     ) -> Result<TileGeometry, Box<dyn std::error::Error + Send + Sync>> {
         let Manifest { frame, coordinates, point_scale, .. } = manifest;
         let quantum_m = manifest.vertical.quantum_m;
-        let decoded = decode(payload, id, frame, quantum_m, self.sections)?;
+        let decoded = manifest.decode(payload, id, self.sections)?;
         // The manifest has a record for every level of the frame: the reader of manifests checks that.
         let margin_m = manifest.levels[usize::from(id.z())].width_margin_m;
         let scale = PlanScale::of_tile(coordinates, frame.tile_bounds(id), *point_scale);

@@ -3,7 +3,7 @@
 use corniche_geom::{Bounds, GridFrame, MOST_TILE_STEPS, TileId, Work, barycentric};
 use corniche_styles::OwnWidths;
 use corniche_tileset::{AreaRecord, SpanRun, Terrain, TilePayload};
-use corniche_tin::{Placement, Surface};
+use corniche_tin::Surface;
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -92,7 +92,8 @@ impl TileGeometry {
         quantum_m: f64,
     ) -> Self {
         let has_roads = !lines.ground.is_empty() || !lines.plan.is_empty();
-        let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
+        let surface = terrain.filter(|_| has_roads);
+        let surface = surface.map(|terrain| Surface::of_tile(&terrain.tin, frame, id, quantum_m));
         Self::on_surface(
             (id, terrain, surface.as_ref()),
             lines,
@@ -192,7 +193,8 @@ impl TileGeometry {
         let (id, terrain) = (payload.id, payload.terrain.as_ref());
         let spans = spans.filter(|_| mapping == Mapping::OnTriangles);
         let has_roads = !payload.roads_geo.is_empty() || !payload.roads_sv.is_empty();
-        let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
+        let surface = terrain.filter(|_| has_roads);
+        let surface = surface.map(|terrain| Surface::of_tile(&terrain.tin, frame, id, quantum_m));
         let lines = TileLines::of_payload(
             payload,
             spans,
@@ -284,14 +286,4 @@ impl TileGeometry {
 pub(crate) fn plan_around([x, y, _]: [f64; 3], size_m: [f64; 2]) -> Bounds {
     let [east_m, north_m] = size_m.map(|side_m| side_m / 2.0);
     Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m }
-}
-
-/// The ground of a tile on the lattice, as roads need it.
-fn surface(
-    id: TileId,
-    terrain: Option<&Terrain>,
-    frame: &GridFrame,
-    quantum_m: f64,
-) -> Option<Surface> {
-    terrain.map(|terrain| Surface::new(&terrain.tin, Placement::of_tile(frame, id, quantum_m)))
 }

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use corniche_geom::Bounds;
+use corniche_geom::{Bounds, along};
 use corniche_roads::FunctionalRoadClass;
 
-use super::TileGeometry;
+use super::{TileGeometry, distance};
 
 /// A rectangle in plan, and the ground in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,14 +58,12 @@ struct Piece {
 
 impl Piece {
     fn length_m(&self) -> f64 {
-        let [[x, y], [to_x, to_y]] = self.ends;
-        libm::hypot(to_x - x, to_y - y)
+        distance(self.ends[0], self.ends[1])
     }
 
     /// A place on it.
     fn at(&self, share: f64) -> [f64; 2] {
-        let [from, to] = self.ends;
-        [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
+        along(self.ends[0], self.ends[1], share)
     }
 
     /// How much it counts: important roads count more.
@@ -197,12 +195,7 @@ fn end_of_tail<'a>(mut along: impl Iterator<Item = &'a (f64, f64)>, tail_m: f64)
 fn with_margin(roads: Bounds, data: Bounds) -> Bounds {
     let least_m = LEAST_SHARE * data.width().max(data.height());
     let margin_m = (MARGIN * roads.width().max(roads.height())).max(least_m / 2.0);
-    let wider = Bounds {
-        min_x: (roads.min_x - margin_m).max(data.min_x),
-        min_y: (roads.min_y - margin_m).max(data.min_y),
-        max_x: (roads.max_x + margin_m).min(data.max_x),
-        max_y: (roads.max_y + margin_m).min(data.max_y),
-    };
+    let wider = roads.expanded([margin_m; 2]).intersection(&data);
     if wider.is_empty() { data } else { wider }
 }
 

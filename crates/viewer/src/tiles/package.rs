@@ -3,9 +3,7 @@
 use std::collections::BTreeSet;
 
 use corniche_geom::{GridFrame, TileId};
-use corniche_tileset::{
-    ByteSource, Manifest, OpenError, Package, Sections, decode, terrain_summary,
-};
+use corniche_tileset::{ByteSource, Manifest, OpenError, Package, Sections, terrain_summary};
 
 use super::{
     LoadTileError, MapPackage, ShadingSlopes, TileCatalog, TileDecoder, TileGeometry, TileLines,
@@ -92,8 +90,8 @@ impl<S: ByteSource> PackageTiles<S> {
         if summary.is_none() {
             return Ok(tile);
         }
-        let payload = decode(&bytes, id, self.frame(), quantum_m, Sections::RELIEF)
-            .map_err(|error| failed(error.into()))?;
+        let payload = self.manifest().decode(&bytes, id, Sections::RELIEF);
+        let payload = payload.map_err(|error| failed(error.into()))?;
         let cell = self.frame().level_cell(id.z());
         let shading = payload.relief.as_ref().map(|relief| ShadingSlopes::new(relief, cell));
         Ok(TileGeometry { summary, shading, ..tile })

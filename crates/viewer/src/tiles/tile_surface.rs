@@ -2,7 +2,7 @@
 
 use corniche_geom::{GridFrame, MOST_TILE_STEPS};
 use corniche_tileset::Manifest;
-use corniche_tin::{Placement, Surface, Tin, TinVertex};
+use corniche_tin::{Tin, TinVertex};
 
 use super::{PlanScale, TileGeometry, TileSurface};
 
@@ -19,10 +19,10 @@ impl TileSurface {
 
     /// The ground of a tile of a package, whose TIN is this one.
     pub(crate) fn new(tile: &TileGeometry, tin: &Tin, manifest: &Manifest) -> Self {
-        let Manifest { frame, coordinates, point_scale, vertical, .. } = manifest;
+        let Manifest { frame, coordinates, point_scale, .. } = manifest;
         Self {
             id: tile.id,
-            surface: Surface::new(tin, Placement::of_tile(frame, tile.id, vertical.quantum_m)),
+            surface: manifest.surface(tile.id, tin),
             frame: *frame,
             reference_m: tile.reference_m,
             width_margin_m: tile.width_margin_m,

@@ -97,7 +97,7 @@ fn section(
 fn coded_places(areas: &[AreaRecord], bounds: LatticeBounds, step: i64) -> Option<Vec<u8>> {
     let mut coder = RingCoder::new(bounds, step);
     let mut bits = Writer::new(Vec::new());
-    for ring in areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings) {
+    for ring in areas.iter().flat_map(AreaRecord::rings) {
         for &point in ring {
             if coder.code_point(&mut bits, Some(point)) != Ok(point) {
                 return None;
@@ -109,7 +109,7 @@ fn coded_places(areas: &[AreaRecord], bounds: LatticeBounds, step: i64) -> Optio
 }
 
 fn check(areas: &[AreaRecord], bounds: &LatticeBounds, step: i64) -> Result<(), &'static str> {
-    let rings = || areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
+    let rings = || areas.iter().flat_map(AreaRecord::rings);
     let polygons = areas.iter().flat_map(|area| &area.polygons);
     if step < 1 {
         return Err("a lattice without spacing");

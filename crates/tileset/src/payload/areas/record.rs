@@ -17,6 +17,13 @@ pub struct AreaRecord {
     pub polygons: Vec<AreaRings>,
 }
 
+impl AreaRecord {
+    /// All its rings.
+    pub fn rings(&self) -> impl Iterator<Item = &Vec<LatticePoint>> {
+        self.polygons.iter().flat_map(|part| &part.rings)
+    }
+}
+
 /// A polygon: an outer ring, counter-clockwise, then rings around its holes, clockwise. The first point of a ring is not repeated at its
 /// end. All points lie in the tile or on its border.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

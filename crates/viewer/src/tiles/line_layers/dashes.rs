@@ -1,6 +1,6 @@
 //! Where the dashes of a line are, if they lie on the ground: their lengths are true along it, not in plan.
 
-use super::super::DashPlace;
+use super::super::{DashPlace, distance};
 
 /// How long the ground under each segment of a line is.
 ///
@@ -41,7 +41,7 @@ impl GroundLengths {
             // What lies on no ground of the tile is not drawn there.
             let rate = if *plan_m > 0.0 { ground_m / plan_m } else { 1.0 };
             let start_m = along_m;
-            along_m += rate * libm::hypot(to[0] - from[0], to[1] - from[1]);
+            along_m += rate * distance(*from, *to);
             (*from, start_m, rate)
         });
         DashPlaces(of_segments.collect())
@@ -55,7 +55,6 @@ impl DashPlaces {
     /// The dashes of a part of a segment that starts at this point.
     pub(crate) fn at(&self, segment: usize, start: [f64; 2]) -> DashPlace {
         let Some((from, start_m, rate)) = self.0.get(segment) else { return DashPlace::flat(0.0) };
-        let beyond_m = libm::hypot(start[0] - from[0], start[1] - from[1]);
-        DashPlace::new(start_m + rate * beyond_m, *rate)
+        DashPlace::new(start_m + rate * distance(*from, start), *rate)
     }
 }

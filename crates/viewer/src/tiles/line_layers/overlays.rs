@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use corniche_geom::{GridFrame, LatticeBounds, LatticePoint, Polyline, TileId};
-use corniche_roads::{FunctionalRoadClass, MetNodes, Road, RoadAttributes, simplify};
+use corniche_roads::{FunctionalRoadClass, simplify};
 
 use super::LayerLine;
 
@@ -16,10 +16,18 @@ const RUN: usize = 64;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlays {
     /// The lines of the files, without points that lie on the ones before.
-    lines: Vec<Road>,
+    lines: Vec<SourceLine>,
     levels: Vec<Level>,
     /// The files that they come from, by the styles of the lines.
     names: Vec<String>,
+}
+
+/// A line of a file, whole.
+#[derive(Debug, Clone, PartialEq)]
+struct SourceLine {
+    id: i64,
+    style: u8,
+    path: Polyline,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +56,7 @@ impl Overlays {
             };
             Level { tolerance: tolerance_m / frame.lattice_step_m(), lines: OnceLock::new() }
         });
-        let lines = lines.iter().filter_map(as_road).collect();
+        let lines = lines.iter().filter_map(SourceLine::of).collect();
         Self { lines, levels: levels.collect(), names: Vec::new() }
     }
 
@@ -87,31 +95,22 @@ impl Overlays {
     }
 }
 
-/// A line as what can be simplified: its style is the class. `None` if it is not two different points long.
-fn as_road(line: &LayerLine) -> Option<Road> {
-    let mut points = line.points.clone();
-    points.dedup();
-    let path = Polyline::new(points).ok()?;
-    let last = path.points().len() as u32 - 1;
-    Some(Road {
-        way_id: line.id,
-        class: FunctionalRoadClass::new(line.style)?,
-        attributes: RoadAttributes::default(),
-        line: path,
-        fixed: vec![0, last],
-        node_ids: Vec::new(),
-        same_places: Vec::new(),
-        met: MetNodes::default(),
-    })
+impl SourceLine {
+    /// `None` if it is not two different points long, or its style is none of those that classes of roads have.
+    fn of(line: &LayerLine) -> Option<Self> {
+        let mut points = line.points.clone();
+        points.dedup();
+        let (path, class) = (Polyline::new(points).ok()?, FunctionalRoadClass::new(line.style)?);
+        Some(Self { id: line.id, style: class.number(), path })
+    }
 }
 
 impl LevelLine {
-    fn new(road: &Road, tolerance: f64) -> Self {
-        let points = simplify(road, tolerance).points().to_vec();
+    fn new(&SourceLine { id, style, ref path }: &SourceLine, tolerance: f64) -> Self {
+        let points = simplify(path, &[], tolerance).into_points();
         let runs = (0..points.len() - 1).step_by(RUN).filter_map(|first| {
             LatticeBounds::of(&points[first..points.len().min(first + RUN + 1)])
         });
-        let (id, style) = (road.way_id, road.class.number());
         Self { runs: runs.collect(), line: LayerLine { id, style, points } }
     }
 

@@ -11,9 +11,13 @@ use std::{
     collections::{BTreeMap, BTreeSet},
 };
 
-use corniche_geom::{Bounds, Work};
+use corniche_geom::{Bounds, Work, along};
 
-use super::{super::shares_in, DeckLine, GroundLine, PlanLine, TileLines, flat_ends::LineEnds};
+use super::{
+    super::{distance, shares_in},
+    DeckLine, GroundLine, PlanLine, TileLines,
+    flat_ends::LineEnds,
+};
 
 /// A point of a run lies this near to its way: a few steps of the lattice.
 const NEAR_M: f64 = 0.005;
@@ -121,7 +125,7 @@ impl<'a> OffGround<'a> {
         for (number, pair) in points_m.windows(2).enumerate() {
             self.work.add(1);
             let [a, b] = [pair[0], pair[1]];
-            let place = |share: f64| (LinePlace { segment: number, share }, between([a, b], share));
+            let place = |share: f64| (LinePlace { segment: number, share }, along(a, b, share));
             let [enters, leaves] = shares_in(a, [b[0] - a[0], b[1] - a[1]], around);
             if enters > leaves {
                 all.push(Stretch { from: place(0.0), to: place(1.0) });
@@ -219,7 +223,7 @@ impl<'a> OffGround<'a> {
             self.work.check().ok()?;
             let [a, b] = segment(points_m, number);
             let share = share_of(point, [a, b]);
-            let at = between([a, b], share);
+            let at = along(a, b, share);
             if distance(at, point) <= NEAR_M {
                 return Some(LinePlace { segment: number, share });
             }
@@ -371,14 +375,6 @@ fn share_of([x, y]: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
         return 0.0;
     }
     (((x - a[0]) * dx + (y - a[1]) * dy) / squared).clamp(0.0, 1.0)
-}
-
-fn between([a, b]: [[f64; 2]; 2], share: f64) -> [f64; 2] {
-    [0, 1].map(|k| a[k] + share * (b[k] - a[k]))
-}
-
-fn distance([x, y]: [f64; 2], [to_x, to_y]: [f64; 2]) -> f64 {
-    libm::hypot(to_x - x, to_y - y)
 }
 
 #[cfg(test)]

@@ -186,7 +186,7 @@ proptest! {
             for pair in line.windows(2) {
                 let own_m = distance(pair[0], pair[1]);
                 if left_m <= own_m {
-                    return between([pair[0], pair[1]], left_m / own_m);
+                    return along(pair[0], pair[1], left_m / own_m);
                 }
                 left_m -= own_m;
             }

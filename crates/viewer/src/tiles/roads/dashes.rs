@@ -2,6 +2,8 @@
 
 use corniche_geom::Bounds;
 
+use super::super::distance;
+
 /// Lengths are counted in whole lengths of this many metres, so that f32 is precise enough between them. A power of two, as the
 /// dashes are.
 const WRAP_M: f64 = 65_536.0;
@@ -51,8 +53,7 @@ pub(crate) fn dash_starts(vertices_m: &[[f64; 2]], tile: Bounds) -> Vec<DashPlac
     // The length up to the vertex reached, if it is inside.
     let mut reached_m = vertices_m.first().filter(|first| is_inside(**first)).map(|_| 0.0);
     let segments = vertices_m.windows(2).map(|pair| {
-        let [[x, y], [to_x, to_y]] = [pair[0], pair[1]];
-        let length_m = libm::hypot(to_x - x, to_y - y);
+        let length_m = distance(pair[0], pair[1]);
         let ends_inside = is_inside(pair[1]);
         let start_m = match reached_m {
             Some(start_m) => start_m,

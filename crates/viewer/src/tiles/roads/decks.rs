@@ -6,7 +6,7 @@ use corniche_geom::{Bounds, Work};
 use corniche_roads::slab_thickness_m;
 
 use super::{
-    super::{PlanScale, ground_mesh::relative},
+    super::{PlanScale, distance, ground_mesh::relative},
     DeckLine, RoadEnd, RoadKind, RoadList,
     dashes::{DashPlace, dash_starts},
     ends::Side,
@@ -142,7 +142,7 @@ impl RoadList<DeckPiece> {
                 .map(|end| end.is_some_and(|at| Side::of(*at, tile).is_some()));
             let lands = [0, 1].map(|end| deck.on_ground[end] && !goes_on[end]);
             // How long it is beyond the tile is not known.
-            let length_m = plan.windows(2).map(|pair| distance([pair[0], pair[1]])).sum::<f64>();
+            let length_m = plan.windows(2).map(|pair| distance(pair[0], pair[1])).sum::<f64>();
             let deck_m = if goes_on == [false; 2] { length_m as f32 } else { OPEN_M };
             let at_end = |at: [f64; 2], outward: [f64; 2]| match Side::of(at, tile) {
                 // It goes on in the next tile.
@@ -162,7 +162,7 @@ impl RoadList<DeckPiece> {
                 };
                 let dash = dashes[number];
                 let width_factor = scale.across([plan[number], plan[number + 1]]) as f32;
-                let length_m = distance([plan[number], plan[number + 1]]);
+                let length_m = distance(plan[number], plan[number + 1]);
                 let count = (length_m / longest_m).ceil().clamp(1.0, 2.0 * MOST_PIECES);
                 let of_length = STEPS_OF_SIDE * (length_m / side_m).min(2.0 * MOST_PIECES);
                 work.add(STEPS_OF_PIECE * count as usize + of_length as usize);
@@ -202,10 +202,6 @@ impl RoadList<DeckPiece> {
         }
         Self::sorted(pieces, deck_ends(decks, tile, scale))
     }
-}
-
-fn distance([[x, y], [to_x, to_y]]: [[f64; 2]; 2]) -> f64 {
-    libm::hypot(to_x - x, to_y - y)
 }
 
 /// Where decks end on the tile's border.

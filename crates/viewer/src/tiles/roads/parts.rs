@@ -2,9 +2,12 @@
 
 use std::{borrow::Cow, collections::BTreeMap};
 
-use corniche_geom::Bounds;
+use corniche_geom::{Bounds, DisjointSets};
 
-use super::{super::shares_in, NearHeights, RoadKind, RoadLook};
+use super::{
+    super::{distance, shares_in},
+    NearHeights, RoadKind, RoadLook,
+};
 
 /// The length of a part of which not all is known, working metres; larger than any other.
 pub(crate) const OPEN_M: f32 = 1e15;
@@ -54,7 +57,13 @@ pub(crate) struct KnownNet {
 pub(crate) fn part_lengths_m(lines: &[NetLine], known: KnownNet) -> Vec<f32> {
     let mut order: Vec<usize> = (0..lines.len()).collect();
     order.sort_by_key(|number| (rank(&lines[*number]), *number));
-    let mut net = Net { parts: Vec::new(), at: BTreeMap::new(), known, left: MOST_SQUARES };
+    let mut net = Net {
+        parts: DisjointSets::new(0),
+        lengths_m: Vec::new(),
+        at: BTreeMap::new(),
+        known,
+        left: MOST_SQUARES,
+    };
     let mut lengths_m = vec![OPEN_M; lines.len()];
     for run in order.chunk_by(|a, b| rank(&lines[*a]) == rank(&lines[*b])) {
         let parts: Vec<usize> = run.iter().map(|&n| net.add(&lines[n])).collect();
@@ -62,8 +71,7 @@ pub(crate) fn part_lengths_m(lines: &[NetLine], known: KnownNet) -> Vec<f32> {
             return vec![OPEN_M; lines.len()];
         }
         for (&number, part) in run.iter().zip(parts) {
-            let part = net.root(part);
-            lengths_m[number] = net.parts[part].length_m as f32;
+            lengths_m[number] = net.lengths_m[net.parts.first_of(part)] as f32;
         }
     }
     lengths_m
@@ -139,21 +147,17 @@ impl KnownNet {
     }
 }
 
-/// Parts of the network, as a forest of lines that belong together.
+/// Parts of the network.
 struct Net {
-    parts: Vec<ForestLine>,
+    /// Which lines belong together.
+    parts: DisjointSets,
+    /// The length of all lines of a part; known at the first of them.
+    lengths_m: Vec<f64>,
     /// A line that comes through a square.
     at: BTreeMap<[i64; 2], usize>,
     known: KnownNet,
     /// Squares that may still be visited.
     left: usize,
-}
-
-struct ForestLine {
-    /// Another line of the same part, itself at the root.
-    parent: usize,
-    /// The length of all lines of the part; known at the root.
-    length_m: f64,
 }
 
 impl Net {
@@ -162,8 +166,8 @@ impl Net {
         let vertices_m = &line.vertices_m;
         let length_m = vertices_m.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
         let length_m = if self.known.holds(vertices_m) { length_m } else { f64::from(OPEN_M) };
-        let number = self.parts.len();
-        self.parts.push(ForestLine { parent: number, length_m });
+        let number = self.parts.add();
+        self.lengths_m.push(length_m);
         let known = self.known;
         known.squares(vertices_m, |square| {
             self.left = self.left.saturating_sub(1);
@@ -182,28 +186,14 @@ impl Net {
         number
     }
 
-    fn root(&mut self, mut number: usize) -> usize {
-        while self.parts[number].parent != number {
-            let above = self.parts[number].parent;
-            self.parts[number].parent = self.parts[above].parent;
-            number = above;
-        }
-        number
-    }
-
     fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
+        let (a, b) = (self.parts.first_of(a), self.parts.first_of(b));
         if a != b {
-            let (child, root) = (a.max(b), a.min(b));
-            self.parts[child].parent = root;
-            let sum_m = self.parts[a].length_m + self.parts[b].length_m;
-            self.parts[root].length_m = sum_m.min(f64::from(OPEN_M));
+            self.parts.join(a, b);
+            let sum_m = self.lengths_m[a] + self.lengths_m[b];
+            self.lengths_m[a.min(b)] = sum_m.min(f64::from(OPEN_M));
         }
     }
-}
-
-fn distance([x, y]: [f64; 2], [to_x, to_y]: [f64; 2]) -> f64 {
-    libm::hypot(to_x - x, to_y - y)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::{
-    super::{PlanScale, ground_mesh::relative},
+    super::{PlanScale, distance, ground_mesh::relative},
     Bed, GroundLine, RoadKind, RoadList,
     cut::OffGround,
     dashes::{DashPlace, dash_starts},
@@ -90,8 +90,8 @@ impl Piece {
 
     /// How long it is in plan.
     pub(crate) fn length_m(&self) -> f64 {
-        let [[x, y, _], [to_x, to_y, _]] = self.ends_m;
-        libm::hypot(to_x - x, to_y - y)
+        let [from, to] = self.ends_m.map(|[x, y, _]| [x, y]);
+        distance(from, to)
     }
 
     /// How far along its source segment a position lies: 0 at its start, 1 at its end.
@@ -127,8 +127,7 @@ impl RoadLine for GroundLine {
     /// Where it was not cut at the border or beside a void.
     fn ends(&self) -> LineEnds {
         // Positions of the same point by two formulas.
-        let is_at =
-            |[x, y, _]: [f64; 3], [to_x, to_y]: [f64; 2]| libm::hypot(to_x - x, to_y - y) < 1e-6;
+        let is_at = |[x, y, _]: [f64; 3], to: [f64; 2]| distance([x, y], to) < 1e-6;
         let first = self.sources_m.first().zip(self.points_m.first());
         let last = self.sources_m.last().zip(self.points_m.last());
         let first = first.filter(|([a, _], point)| is_at(**point, *a)).map(|([a, b], _)| [*b, *a]);

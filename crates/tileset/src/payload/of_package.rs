@@ -1,0 +1,43 @@
+//! Payloads of the tiles of a package, decoded and placed as its manifest says.
+
+use corniche_geom::TileId;
+use corniche_tin::{Surface, Tin};
+
+use crate::manifest::Manifest;
+use crate::payload::damage::DecodeError;
+use crate::payload::decode::decode;
+use crate::payload::section_kind::Sections;
+use crate::payload::spans::{SpanRun, decode_spans};
+use crate::payload::tile_payload::TilePayload;
+
+impl Manifest {
+    /// Reads the wanted sections of a tile's payload, as [`decode`] does.
+    ///
+    /// # Errors
+    /// Those of [`decode`].
+    pub fn decode(
+        &self,
+        bytes: &[u8],
+        id: TileId,
+        wanted: Sections,
+    ) -> Result<TilePayload, DecodeError> {
+        decode(bytes, id, &self.frame, self.vertical.quantum_m, wanted)
+    }
+
+    /// Reads the spans of a tile's payload, as [`decode_spans`] does.
+    ///
+    /// # Errors
+    /// Those of [`decode_spans`].
+    pub fn decode_spans(&self, bytes: &[u8], id: TileId) -> Result<Vec<SpanRun>, DecodeError> {
+        decode_spans(bytes, id, &self.frame, self.vertical.quantum_m)
+    }
+
+    /// The ground of a tile with this TIN, on the package's lattice.
+    ///
+    /// # Panics
+    /// When the tile's level is beyond the package's finest one.
+    #[must_use]
+    pub fn surface(&self, id: TileId, tin: &Tin) -> Surface {
+        Surface::of_tile(tin, &self.frame, id, self.vertical.quantum_m)
+    }
+}
