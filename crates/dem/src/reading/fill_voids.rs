@@ -9,10 +9,11 @@ const DIRECTIONS: [[i64; 2]; 8] =
 /// Fills void nodes (NaN) of the inside of a window from data within `reach` cells.
 ///
 /// ```text
-///   ·   ·   8       A void is filled if and only if data is found within `reach` cells in each of the eight ·     |
-///   /   directions. Its height is the mean of those eight, weighted by inverse distance 7 ─ ─ ─ ? ─ 3   in working
-///   metres: a step east is as long as the cell's east side. /   / | · 6   ·   5   4   Only data counts, never filled
-///   nodes: so the result does not depend on the window that is read.
+///   ·   ·   8       A void is filled if and only if data is found within `reach` cells
+///     ·     |   /   in each of the eight directions. Its height is the mean of those eight,
+///   7 ─ ─ ─ ? ─ 3   weighted by inverse distance in working metres: a step east is as long
+///     /   / | ·     as the cell's east side. Only data counts, never filled nodes, so the
+///   6   ·   5   4   result does not depend on the window that is read.
 /// ```
 ///
 /// `heights_m` holds `columns` nodes a row, with `reach` nodes of halo on every side. What comes
