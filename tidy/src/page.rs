@@ -19,7 +19,7 @@ pub const PAGE: &str = "crates/cli/page.toml";
 /// The folders of the crates whose modules the page loads.
 const MODULES: [&str; 2] = ["crates/web", "crates/web-styles"];
 /// What makes the page from the crates.
-const SCRIPT: &str = "scripts/web";
+const SCRIPTS: [&str; 2] = ["scripts/web", "scripts/lib/web.sh"];
 /// Folders of a crate that no page is made from.
 const NOT_SOURCES: [&str; 3] = ["tests", "benches", "examples"];
 
@@ -37,7 +37,8 @@ pub fn page_sources(root: &Path) -> Result<String> {
         hash.update((bytes.len() as u64).to_le_bytes());
         hash.update(bytes);
     };
-    let known = &workspace["workspace"]["dependencies"];
+    let known = workspace.get("workspace").and_then(|table| table.get("dependencies"));
+    let known = known.context("Cargo.toml has no dependencies of the workspace")?;
     let used = used_crates(root, known)?;
     for name in &used.own {
         let folder = root.join(name);
@@ -56,11 +57,15 @@ pub fn page_sources(root: &Path) -> Result<String> {
         add(name, known[name].to_string().as_bytes());
     }
     // Of a browser's modules; they take over what they do not set of those of a release.
-    for profile in ["release", "wasm"] {
-        add(profile, workspace["profile"][profile].to_string().as_bytes());
+    for name in ["release", "wasm"] {
+        let profile = workspace.get("profile").and_then(|profiles| profiles.get(name));
+        let profile = profile.with_context(|| format!("Cargo.toml has no profile {name}"))?;
+        add(name, profile.to_string().as_bytes());
     }
     add("versions", locked_versions(root, &used.names)?.as_bytes());
-    add(SCRIPT, &fs::read(root.join(SCRIPT)).with_context(|| format!("cannot read {SCRIPT}"))?);
+    for script in SCRIPTS {
+        add(script, &fs::read(root.join(script)).with_context(|| format!("cannot read {script}"))?);
+    }
     Ok(hash.finalize().iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text

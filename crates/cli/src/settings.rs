@@ -197,13 +197,19 @@ fn area_table(options: &AreaOptions, osm: &[PathBuf]) -> Result<Option<AreaTable
 
 /// The layers of lines that are wanted.
 fn lines(options: &AreaOptions, osm: &[PathBuf]) -> Result<Vec<ClassedLayer>, Failure> {
-    let is_wanted = options.boundaries == Some(true);
-    if is_wanted && osm.is_empty() {
-        return Err(Failure::unusable(
-            "--boundaries takes boundaries from an extract; give one with --osm",
-        ));
+    let is_wanted = |layer: &ClassedLayer| match layer {
+        ClassedLayer::Boundaries => options.boundaries == Some(true),
+    };
+    let wanted: Vec<_> = ClassedLayer::ALL.into_iter().filter(is_wanted).collect();
+    match wanted.first() {
+        Some(layer) if osm.is_empty() => {
+            let name = layer.name();
+            Err(Failure::unusable(format!(
+                "--{name} takes {name} from an extract; give one with --osm"
+            )))
+        }
+        _ => Ok(wanted),
     }
-    Ok(Vec::from_iter(is_wanted.then_some(ClassedLayer::Boundaries)))
 }
 
 fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {

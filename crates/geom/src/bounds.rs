@@ -47,14 +47,14 @@ impl Bounds {
         !(self.min_x <= self.max_x && self.min_y <= self.max_y)
     }
 
-    /// The same rectangle, larger by a margin in the west and in the east, and by one in the south and in the north.
+    /// The same rectangle, wider by `margin_x` on the west and on the east side, higher by `margin_y` on the south and on the north side.
     #[must_use]
-    pub fn expanded(&self, [east, north]: [f64; 2]) -> Self {
+    pub fn expanded(&self, [margin_x, margin_y]: [f64; 2]) -> Self {
         Self {
-            min_x: self.min_x - east,
-            min_y: self.min_y - north,
-            max_x: self.max_x + east,
-            max_y: self.max_y + north,
+            min_x: self.min_x - margin_x,
+            min_y: self.min_y - margin_y,
+            max_x: self.max_x + margin_x,
+            max_y: self.max_y + margin_y,
         }
     }
 

@@ -36,3 +36,7 @@ impl DisjointSets {
         self.before[one.max(other)] = one.min(other);
     }
 }
+
+#[cfg(test)]
+#[path = "disjoint_sets_tests.rs"]
+mod tests;

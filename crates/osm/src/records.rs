@@ -5,7 +5,7 @@
 //!                           Located  by node id ──┘
 //! ```
 
-use corniche_store::{SerdeRecord, SortRecord};
+use corniche_store::SortRecord;
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -98,10 +98,18 @@ impl SortRecord for WayRecord {
 }
 
 /// The id of a node or a way that is looked for.
-#[derive(Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct SoughtId(pub(crate) i64);
 
-impl SerdeRecord for SoughtId {}
+impl SortRecord for SoughtId {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        push_signed(bytes, self.0);
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        take_signed(bytes).map(Self)
+    }
+}
 
 /// A node that a way names. The nodes of all ways are numbered through, in the order of the ways.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -6,10 +6,12 @@ use serde::{Serialize, de::DeserializeOwned};
 const MOST_BYTES: usize = 1 << 28;
 
 /// Appends a record to `bytes`.
+///
+/// # Panics
+/// When the type cannot be written, such as a list of unknown length: a fault of the program, and half a record must not be kept.
 pub fn append_record(bytes: &mut Vec<u8>, record: impl Serialize) {
-    // Writing to a list cannot fail, and all that is kept so can be written.
     let written = bincode::serde::encode_into_std_write(record, bytes, bincode::config::standard());
-    debug_assert!(written.is_ok());
+    assert!(written.is_ok(), "a record that cannot be written: {written:?}");
 }
 
 /// A record as bytes.
@@ -27,3 +29,7 @@ pub fn take_record<T: DeserializeOwned>(bytes: &mut &[u8]) -> Option<T> {
     *bytes = bytes.get(used..)?;
     Some(record)
 }
+
+#[cfg(test)]
+#[path = "record_bytes_tests.rs"]
+mod tests;

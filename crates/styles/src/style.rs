@@ -19,7 +19,7 @@ pub struct RoadStyle {
     pub bands: RoadBands,
     /// Colour of the edge.
     pub outline: Rgb,
-    /// The most true metres of ground in a pixel at which roads are drawn in full; see [`RoadStyle::shown_share`]. `None`:
+    /// The most true metres of ground in a pixel at which roads are drawn in full; beyond, they become fainter. `None`:
     /// they always are.
     pub max_pixel_m: Option<f32>,
     /// Where widths grow with distance, roads grow no wider than this; `None`: without end. What is wider near the eye stays so.

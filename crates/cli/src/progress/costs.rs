@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// What this run did of a stage per second, over all of its time; `None` if it did nothing.
-fn per_second(stage: &Reading) -> Option<f64> {
+fn mean_per_second(stage: &Reading) -> Option<f64> {
     let done = stage.done - stage.already;
     (done > 0 && !stage.elapsed.is_zero()).then(|| done as f64 / stage.elapsed.as_secs_f64())
 }
@@ -67,7 +67,7 @@ impl Costs {
         };
         for cost in &self.0 {
             let unit = cost.stage.unit();
-            let rate = per_second(cost).map(|per_second| rate(per_second, unit, digits));
+            let rate = mean_per_second(cost).map(|per_second| rate(per_second, unit, digits));
             let done = amount(cost.done, unit, digits);
             table.row(row(
                 cost.stage.title(),
@@ -88,7 +88,7 @@ impl Costs {
             title: cost.stage.title(),
             done: cost.done,
             already: cost.already,
-            per_second: per_second(cost),
+            per_second: mean_per_second(cost),
             cost: figures(cost.elapsed, &cost.used),
         };
         ProgressRecord::Costs {

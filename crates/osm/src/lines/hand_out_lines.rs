@@ -36,7 +36,7 @@ pub(crate) fn hand_out_lines<'a>(
     while let Some(object) = known.next(take_record::<ObjectRecord>)? {
         classes.push(object.class.unwrap_or(NO_CLASS));
         if let Some(names) = &mut names {
-            names.objects.push(object);
+            names.objects.push((object.object, object.class, object.name));
         }
     }
     let mut summary = LineSummary { objects: count, ..LineSummary::default() };

@@ -2,15 +2,12 @@
 
 use corniche_areas::{AreaObject, ClassedLayer};
 
-use crate::{
-    layer_sink::NamesSink,
-    outlines::{located_ways::LocatedWay, records::ObjectRecord},
-};
+use crate::{layer_sink::NamesSink, outlines::located_ways::LocatedWay};
 
 /// Objects with their names, and who is told these.
 pub(crate) struct LineNames<'a, 'b> {
-    /// All objects, by their numbers.
-    pub(crate) objects: Vec<ObjectRecord>,
+    /// All objects with their classes and names, by their numbers.
+    pub(crate) objects: Vec<(AreaObject, Option<u8>, Box<str>)>,
     pub(crate) on_name: &'a mut NamesSink<'b>,
 }
 
@@ -19,10 +16,7 @@ impl LineNames<'_, '_> {
     pub(crate) fn tell(&mut self, layer: ClassedLayer, way: &LocatedWay, numbers: &[u64]) {
         let is_closed = way.places.first() == way.places.last();
         for &number in numbers {
-            let Some(ObjectRecord { object, class, name, .. }) = self.objects.get(number as usize)
-            else {
-                continue;
-            };
+            let Some((object, class, name)) = self.objects.get(number as usize) else { continue };
             // An open way bounds nothing by itself: its name is that of a line.
             let is_bounded = is_closed || matches!(object, AreaObject::Relation(_));
             let class = class.and_then(|class| layer.class(class));

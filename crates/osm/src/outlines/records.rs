@@ -58,7 +58,7 @@ pub(crate) enum OutlineLine {
     /// Some of its nodes are not on Earth.
     OutOfRange,
     /// Places in whole 1e-7 degrees.
-    Points(Box<[Location]>),
+    Points(#[serde(with = "differences")] Box<[Location]>),
 }
 
 impl OutlineLine {
@@ -82,6 +82,49 @@ impl OutlineWayRecord {
             OutlineLine::OutOfRange => Err(AreaLoss::OutOfRange),
             OutlineLine::Points(points) => Ok(points),
         }
+    }
+}
+
+/// Places on the disk, each as far as it is from the one before: less than half the bytes.
+mod differences {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    use crate::{
+        location::Location,
+        wire::{push_signed, take_signed},
+    };
+
+    pub(super) fn serialize<S: Serializer>(
+        places: &[Location],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        let mut bytes = Vec::with_capacity(4 * places.len());
+        let mut before: Location = [0; 2];
+        for &place in places {
+            for axis in 0..2 {
+                push_signed(&mut bytes, i64::from(place[axis]) - i64::from(before[axis]));
+            }
+            before = place;
+        }
+        bytes.serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Box<[Location]>, D::Error> {
+        let bytes = Vec::<u8>::deserialize(deserializer)?;
+        let mut rest = bytes.as_slice();
+        let mut place: Location = [0; 2];
+        let mut places = Vec::with_capacity(bytes.len() / 4);
+        while !rest.is_empty() {
+            for on_axis in &mut place {
+                let next = take_signed(&mut rest).and_then(|by| by.checked_add((*on_axis).into()));
+                let next = next.and_then(|next| next.try_into().ok());
+                *on_axis = next.ok_or_else(|| D::Error::custom("no differences of places"))?;
+            }
+            places.push(place);
+        }
+        Ok(places.into())
     }
 }
 

@@ -29,8 +29,7 @@ use corniche_spec::{
 };
 use corniche_store::{OpenMode, Scratch, open_own};
 use corniche_tileset::{
-    LevelRecord, Manifest, PayloadBuilder, ReliefLevels, Section, Sections, WriteError, Writer,
-    decode,
+    LevelRecord, Manifest, PayloadBuilder, ReliefLevels, Sections, WriteError, Writer, decode,
 };
 use corniche_tin::Tin;
 use corniche_work::Stage;
@@ -90,8 +89,8 @@ pub(crate) fn make(
                 .into());
             }
             tiles.add(id, &record);
-            if let Some((section, parts, points)) = spans_of_tile(context, id)? {
-                let bytes = section.size(id)?.stored;
+            if let Some(TileSection { section, parts, points }) = spans_of_tile(context, id)? {
+                let bytes = SectionLayer::Spans.section_of(section).size(id)?.stored;
                 tiles.add_spans(id.z(), SectionOfTile { parts, points, bytes });
             }
             fold.add(&record.fates)?;
@@ -187,9 +186,9 @@ fn write(
         let id = artifacts::tile_of(key)?;
         let mut payload =
             context.store.get(key)?.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?;
-        if let Some((spans, ..)) = spans_of_tile(context, id)? {
+        if let Some(spans) = spans_of_tile(context, id)? {
             let mut builder = PayloadBuilder::with_all_of(&payload, id)?;
-            builder.add(spans)?;
+            builder.add(SectionLayer::Spans.section_of(spans.section))?;
             payload = builder.seal()?.bytes;
         }
         writer.add(id, &payload).map_err(failed)?;
@@ -262,11 +261,7 @@ fn tin_of(context: &Context<'_>, id: TileId) -> Result<Option<Tin>, ExtractError
     Ok(payload.terrain.map(|terrain| terrain.tin).filter(|tin| !tin.is_empty()))
 }
 
-/// The section of spans of a tile, and how much is in it; `None` without spans.
-pub(crate) fn spans_of_tile(
-    context: &Context<'_>,
-    id: TileId,
-) -> Result<Option<(Section, u64, u64)>, BuildError> {
-    let kept = TileSection::get(SectionLayer::Spans, context.store, id)?;
-    Ok(kept.map(|kept| (SectionLayer::Spans.section_of(kept.section), kept.parts, kept.points)))
+/// The section of spans of a tile, with how much is in it; `None` without spans.
+fn spans_of_tile(context: &Context<'_>, id: TileId) -> Result<Option<TileSection>, BuildError> {
+    Ok(TileSection::get(SectionLayer::Spans, context.store, id)?)
 }
