@@ -94,7 +94,7 @@ mod differences {
         wire::{push_signed, take_signed},
     };
 
-    pub(super) fn serialize<S: Serializer>(
+    pub(crate) fn serialize<S: Serializer>(
         places: &[Location],
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
@@ -109,7 +109,7 @@ mod differences {
         bytes.serialize(serializer)
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Box<[Location]>, D::Error> {
         let bytes = Vec::<u8>::deserialize(deserializer)?;
