@@ -1,4 +1,4 @@
-//! The tables of area classes that come with the program, and the reading of such tables.
+//! The built-in tables of area classes, and the parser of area tables.
 
 use corniche_areas::{AreaClass, AreaTable};
 use corniche_config::AREA_TABLES;
@@ -23,21 +23,21 @@ struct AreaEntry {
     tags: Vec<String>,
 }
 
-/// Names of the area tables that come with the program.
+/// Names of the built-in area tables.
 pub fn area_preset_names() -> impl Iterator<Item = &'static str> {
     AREA_TABLES.iter().map(|(name, _)| *name)
 }
 
-/// The text of the table of this name that comes with the program, for [`parse_area_table`].
+/// The text of the built-in table with this name, for [`parse_area_table`].
 #[must_use]
 pub fn area_preset(name: &str) -> Option<&'static str> {
     AREA_TABLES.iter().find(|(preset, _)| *preset == name).map(|(_, text)| *text)
 }
 
-/// Reads an area table's text.
+/// Parses an area table.
 ///
 /// # Errors
-/// When it is no TOML, names a class that does not exist, or its entries make no table.
+/// When the text is not TOML, names an unknown class, or its entries do not form a table.
 pub fn parse_area_table(text: &str) -> Result<AreaTable, PresetError> {
     let file: AreaFile = toml::from_str(bounded(text)?)?;
     let mut tags = Vec::new();

@@ -16,13 +16,13 @@ fn bounds_are_four_degrees_or_a_word() {
         ("1,2,3,4,5", "write west"),
         ("a,2,3,4", "write west"),
         ("OSM.pbf", "write west"),
-        ("1,2,3,nan", "the south must"),
+        ("1,2,3,nan", "south must"),
         ("nan,2,3,4", "longitudes"),
         ("181,2,3,4", "longitudes"),
-        ("1,5,3,4", "the south must"),
-        ("1,4,3,4", "the south must"),
-        ("1,2,3,91", "the south must"),
-        ("7,2,7,4", "the same"),
+        ("1,5,3,4", "south must"),
+        ("1,4,3,4", "south must"),
+        ("1,2,3,91", "south must"),
+        ("7,2,7,4", "are equal"),
     ] {
         let said = BoundsChoice::parse(text).unwrap_err();
         assert!(said.contains(word), "{text}: {said}");

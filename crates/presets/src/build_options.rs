@@ -1,4 +1,5 @@
-//! The options of a build, for the command line and for settings files, as [`corniche_settings::settings!`] declares them.
+//! The options of a build, for the command line and for settings files, declared with
+//! [`corniche_settings::settings!`].
 
 use std::{collections::BTreeMap, num::NonZeroUsize, path::PathBuf};
 
@@ -17,8 +18,8 @@ use crate::{
     },
 };
 
-/// A settings file: the options of the command line, by section. The defaults of options that are left out are decided
-/// elsewhere.
+/// The contents of a settings file: the options of the command line, by section. Defaults of
+/// missing options are not decided here.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Config {
@@ -39,10 +40,10 @@ pub struct Config {
 }
 
 impl Config {
-    /// Reads a settings file's text. Unknown sections and names are refused.
+    /// Parses a settings file. Unknown sections and names are rejected.
     ///
     /// # Errors
-    /// When it is no TOML, or holds what is no setting.
+    /// When the text is not TOML, or has something that is not a setting.
     pub fn parse(text: &str) -> Result<Self, PresetError> {
         Ok(toml::from_str(bounded(text)?)?)
     }
@@ -76,7 +77,7 @@ macro_rules! options {
             }
 
             impl $options {
-                /// These options; those that are not given are taken from `other`.
+                /// These options; missing ones are filled in from `other`.
                 #[must_use]
                 pub fn or(mut self, other: Self) -> Self {
                     let own = self.clone();
@@ -88,10 +89,10 @@ macro_rules! options {
                     self
                 }
 
-                /// Refuses values that make no sense.
+                /// Rejects invalid values.
                 ///
                 /// # Errors
-                /// The first value that is refused, with the reason.
+                /// The first invalid value, with the reason.
                 pub fn check(&self) -> Result<(), String> {
                     $($($check(self.$name.as_slice())?;)?)*
                     Ok(())
@@ -103,7 +104,7 @@ macro_rules! options {
 
 corniche_settings::settings! { [options] () }
 
-/// A list of numbers, or one alone; an empty one says nothing.
+/// A list of numbers, or a single number; an empty list gives nothing.
 fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<f64>>, D::Error> {
     #[derive(Deserialize)]
     #[serde(untagged, expecting = "expected a number or a list of numbers")]
@@ -141,7 +142,7 @@ fn ground_or_spans<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<
     yes_or_no(deserializer, ["ground", "spans"], r#"structures must be "ground" or "spans""#)
 }
 
-/// One of two words, of which the second means yes.
+/// One of two words; the second means yes.
 fn yes_or_no<'de, D: Deserializer<'de>>(
     deserializer: D,
     words: [&str; 2],

@@ -1,4 +1,4 @@
-//! Settings files are read whole or refused, and the command line has precedence.
+//! Settings files are parsed completely or rejected, and the command line has precedence.
 
 use super::*;
 
@@ -78,7 +78,8 @@ fn what_the_first_leaves_out_is_taken_from_the_second() {
     assert_eq!((terrain.cell, terrain.cell_every), (Some(Cell::from(30.0)), None));
 }
 
-/// Options with a different value in each field for each `n`. Every field is named, so that a new one cannot be forgotten.
+/// Options with a different value in each field for each `n`. Every field is named, so that a new
+/// one cannot be forgotten.
 fn all_options(n: u8) -> (TerrainOptions, RoadOptions, AreaOptions, ResourceOptions) {
     let (text, number) = (|name: &str| format!("{name} {n}"), f64::from(n));
     let terrain = TerrainOptions {

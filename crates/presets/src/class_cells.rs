@@ -1,4 +1,4 @@
-//! From which level on each road class is shown, read from settings.
+//! The coarsest cell size at which each road class is shown, from settings.
 
 use std::collections::BTreeMap;
 
@@ -6,14 +6,16 @@ use corniche_roads::{ClassFilter, FunctionalRoadClass};
 
 use crate::PresetError;
 
-/// A filter from coarsest cells, in metres, by class number; a class left out is always shown.
+/// Creates a filter from coarsest cells, in metres, by class number; a class that is not listed is
+/// always shown.
 ///
 /// # Errors
-/// When a name is no class, a cell no length, or a class outlasts a more important one.
+/// When a name is not a class, a cell is not a length, or a class is shown on coarser levels than a
+/// more important one.
 pub fn class_filter(cells_m: &BTreeMap<String, f64>) -> Result<ClassFilter, PresetError> {
     let mut class_max_cell_m = [None; FunctionalRoadClass::COUNT];
     for (class, &cell_m) in cells_m {
-        // "07" and "+7" would be the same class twice, and one of the two lost.
+        // "07" and "+7" would be the same class twice, and one of the two entries would be lost.
         let slot = class
             .parse::<usize>()
             .ok()

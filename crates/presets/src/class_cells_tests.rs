@@ -1,4 +1,4 @@
-//! Road classes vanish in the order of their importance.
+//! Road classes disappear in the order of their importance.
 
 use super::*;
 

@@ -1,11 +1,12 @@
-//! What people call the classes of the FRC tables that come with the program.
+//! Labels of the classes of the built-in FRC tables.
 
 use corniche_roads::FunctionalRoadClass;
 
 use crate::{frc_preset, parse_frc_table};
 
-/// What people call the roads of each class, 0 first, with the FRC table of this name that comes with the program: see
-/// [`FrcTable::class_labels`](corniche_roads::FrcTable::class_labels). "class 5" for tables that do not come with it.
+/// The label of each road class, 0 first, of the built-in FRC table with this name: see
+/// [`FrcTable::class_labels`](corniche_roads::FrcTable::class_labels). For other tables, "class 5"
+/// and so on.
 #[must_use]
 pub fn class_labels(frc_table: &str) -> [String; FunctionalRoadClass::COUNT] {
     let table = frc_preset(frc_table).and_then(|text| parse_frc_table(text).ok());

@@ -1,4 +1,4 @@
-//! Road classes are called by the values of their table.
+//! The labels of road classes are the values in their table.
 
 use super::*;
 #[test]

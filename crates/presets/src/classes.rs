@@ -3,15 +3,15 @@
 use corniche_roads::FunctionalRoadClass;
 use serde::{Deserialize, Deserializer};
 
-/// Numbers of classes, ascending, each once; at least one.
+/// Class numbers, ascending and unique; at least one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Classes(Vec<u8>);
 
 impl Classes {
-    /// Reads numbers and ranges, such as `0-7`, `0,1,2` or `0-2,5`.
+    /// Parses numbers and ranges, such as `0-7`, `0,1,2` or `0-2,5`.
     ///
     /// # Errors
-    /// When it is no such list, or has a number above 8.
+    /// When it is not such a list, or has a number above 8.
     pub fn parse(text: &str) -> Result<Self, String> {
         let range = |part: &str| -> Option<(u8, u8)> {
             let (first, last) = part.split_once('-').unwrap_or((part, part));
@@ -23,7 +23,7 @@ impl Classes {
                 Some((first, last)) if first <= last && is_class(last) => {
                     numbers.extend(first..=last);
                 }
-                _ => return Err("write classes from 0 to 8 like 0-7 or 0,1,2".to_owned()),
+                _ => return Err("write classes from 0 to 8, like 0-7 or 0,1,2".to_owned()),
             }
         }
         numbers.sort_unstable();
@@ -55,15 +55,15 @@ impl<'de> Deserialize<'de> for Classes {
             untagged,
             expecting = "expected a list of classes like [0, 1, 2], or a text like \"0-8\""
         )]
-        enum Written {
+        enum WrittenClasses {
             Numbers(Vec<u8>),
             Text(String),
         }
-        let text = match Written::deserialize(deserializer)? {
-            Written::Numbers(numbers) => {
+        let text = match WrittenClasses::deserialize(deserializer)? {
+            WrittenClasses::Numbers(numbers) => {
                 numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
             }
-            Written::Text(text) => text,
+            WrittenClasses::Text(text) => text,
         };
         Self::parse(&text).map_err(serde::de::Error::custom)
     }

@@ -1,14 +1,16 @@
-//! Errors of reading settings and tables, and the limit on the length of their texts.
+//! Errors of parsing settings and tables, and the limit on the length of their texts.
 
 use corniche_areas::{AreaClass, AreaTableError};
+use corniche_layers::LayerTableError;
 use corniche_roads::{ClassFilterError, FrcTableError};
 
-/// Why a text is no settings file, FRC table or area table. The caller knows which file the text came from.
+/// The reason why a text is not a settings file, a class table or a layer. The caller knows which
+/// file the text came from.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum PresetError {
-    #[error("it holds {bytes} bytes, far more than any settings; at most {limit} are read")]
+    #[error("the file has {bytes} bytes, far more than any settings; the limit is {limit}")]
     TooLong { bytes: usize, limit: usize },
     #[error(transparent)]
     Toml(#[from] toml::de::Error),
@@ -16,24 +18,26 @@ pub enum PresetError {
     FrcTable(#[from] FrcTableError),
     #[error(transparent)]
     AreaTable(#[from] AreaTableError),
-    #[error("area table: {class:?} is no class of areas; classes are {}", class_names())]
+    #[error("area table: {class:?} is not a class of areas; the classes are {}", class_names())]
     AreaClass { class: String },
-    #[error("class-max-cell: {text:?} is no class; classes are 0 to 8")]
+    #[error("line {line}: {error}")]
+    Layer { line: usize, error: LayerTableError },
+    #[error("class-max-cell: {text:?} is not a class; the classes are 0 to 8")]
     Class { text: String },
     #[error("class-max-cell: {0}")]
     ClassFilter(#[from] ClassFilterError),
 }
 
-/// The classes to which tables can give tags.
+/// The classes that tables can assign to tags.
 fn class_names() -> String {
     let names = AreaClass::ALL.into_iter().filter(|&class| class != AreaClass::Sea);
     names.map(AreaClass::name).collect::<Vec<_>>().join(", ")
 }
 
-/// Longest text that is read. The longest preset has some 3 kB.
+/// The largest length of a text. The longest preset has some 3 kB.
 pub(crate) const MAX_TEXT_BYTES: usize = 1 << 20;
 
-/// The text, if it is short enough to be parsed.
+/// Returns the text if it is short enough to be parsed.
 pub(crate) fn bounded(text: &str) -> Result<&str, PresetError> {
     if text.len() > MAX_TEXT_BYTES {
         return Err(PresetError::TooLong { bytes: text.len(), limit: MAX_TEXT_BYTES });

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Deserializer};
 
-/// What is written: the section `[output]`.
+/// The output files: the section `[output]`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputFiles {
@@ -14,7 +14,7 @@ pub struct OutputFiles {
     pub defects: Option<PathBuf>,
 }
 
-/// The names of files: a list, or one alone.
+/// The names of files: a list, or a single name.
 pub(crate) fn one_or_many_names<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Vec<PathBuf>, D::Error> {

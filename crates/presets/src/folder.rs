@@ -1,4 +1,4 @@
-//! Where the paths in a settings file begin.
+//! Resolves the relative paths in a settings file.
 
 use std::path::{Path, PathBuf};
 
@@ -7,8 +7,9 @@ use crate::{
 };
 
 impl Config {
-    /// The same settings, with paths that begin at `folder`, which the settings file is in, instead of the working folder. Absolute
-    /// paths, addresses (`s3://…`) and names with a driver of GDAL (`GPKG:…`) stay, and so do names of presets.
+    /// The same settings, with paths relative to `folder`, which the settings file is in, instead
+    /// of the working folder. Absolute paths, URLs (`s3://…`), names with a GDAL driver (`GPKG:…`)
+    /// and names of presets are unchanged.
     #[must_use]
     pub fn in_folder(mut self, folder: &Path) -> Self {
         let Self { inputs, output, roads, areas, resources, .. } = &mut self;
@@ -35,8 +36,8 @@ impl Config {
     }
 }
 
-/// A path where it begins. A list (`@list.txt`) stays one, and names that GDAL alone understands (`GTIFF_DIR:1:dem.tif`, capitals before
-/// the first colon) stay as they are.
+/// Resolves a path. A list (`@list.txt`) stays a list, and names that only GDAL understands
+/// (`GTIFF_DIR:1:dem.tif`, capitals before the first colon) are unchanged.
 fn within(folder: &Path, path: &Path) -> PathBuf {
     let text = path.to_str().unwrap_or_default();
     if let Some(list) = text.strip_prefix('@') {

@@ -1,4 +1,4 @@
-//! Paths in a settings file begin at its folder.
+//! Paths in a settings file are relative to its folder.
 
 use super::*;
 use crate::InputFiles;

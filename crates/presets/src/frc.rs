@@ -1,4 +1,4 @@
-//! The tables of functional road classes that come with the program, and the reading of such tables.
+//! The built-in tables of functional road classes (FRC), and the parser of FRC tables.
 
 use std::collections::BTreeMap;
 
@@ -19,21 +19,21 @@ struct FrcFile {
     not_roads: Vec<String>,
 }
 
-/// Names of the FRC tables that come with the program.
+/// Names of the built-in FRC tables.
 pub fn frc_preset_names() -> impl Iterator<Item = &'static str> {
     FRC_TABLES.iter().map(|(name, _)| *name)
 }
 
-/// The text of the table of this name that comes with the program, for [`parse_frc_table`].
+/// The text of the built-in table with this name, for [`parse_frc_table`].
 #[must_use]
 pub fn frc_preset(name: &str) -> Option<&'static str> {
     FRC_TABLES.iter().find(|(preset, _)| *preset == name).map(|(_, text)| *text)
 }
 
-/// Reads an FRC table's text.
+/// Parses an FRC table.
 ///
 /// # Errors
-/// When it is no TOML, or its entries make no table.
+/// When the text is not TOML, or its entries do not form a table.
 pub fn parse_frc_table(text: &str) -> Result<FrcTable, PresetError> {
     let file: FrcFile = toml::from_str(bounded(text)?)?;
     let classes = file.classes.into_iter().collect();

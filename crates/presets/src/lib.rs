@@ -1,7 +1,8 @@
-//! Options of a build (on the command line and in settings files) and tables of road and area classes, read from text and checked; and the
-//! tables that come with the program.
+//! Options of a build (on the command line and in settings files) and tables of road and area
+//! classes, parsed from text and checked; and the built-in tables.
 //!
-//! This crate never opens a file, never decides what a setting that is left out means, and never draws.
+//! This crate never opens a file, never chooses the defaults of missing settings, and never
+//! draws.
 
 mod areas;
 mod bounds;
@@ -13,6 +14,7 @@ mod error;
 mod files;
 mod folder;
 mod frc;
+mod layers;
 mod photo;
 mod values;
 
@@ -27,5 +29,6 @@ pub use classes::Classes;
 pub use error::PresetError;
 pub use files::OutputFiles;
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
+pub use layers::{layer_preset, layer_preset_names, parse_layer_table};
 pub use photo::is_photo_off;
 pub use values::{Words, one_of, parse_bytes};

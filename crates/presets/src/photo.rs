@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-/// Whether these names of photos are the one word that says that no photos are wanted. A file of this name is `./off`.
+/// Whether these names of photos are the single word that turns photos off. A file of this name is
+/// `./off`.
 #[must_use]
 pub fn is_photo_off(names: &[PathBuf]) -> bool {
     names == [Path::new("off")]

@@ -1,4 +1,4 @@
-//! Sizes, ranges and cells are read or refused.
+//! Sizes, ranges and cells are parsed or rejected.
 
 use super::*;
 
@@ -28,7 +28,8 @@ fn sizes_of_memory_are_read_or_refused() {
     }
 }
 
-/// As `dd` and GNU's other tools read them, whole or not, in any case, with a blank or without.
+/// Sizes are read as by `dd` and GNU's other tools, whole or not, in any case, with or without a
+/// space.
 #[test]
 fn sizes_have_binary_and_decimal_units() {
     for (text, size_bytes) in [

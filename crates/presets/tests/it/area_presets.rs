@@ -1,4 +1,4 @@
-//! The area tables that come with the program, and texts that are none.
+//! The built-in area tables are valid, and invalid texts are rejected.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -30,7 +30,10 @@ fn a_reservoir_in_a_wood_is_water_whatever_tag_comes_first() {
 #[test]
 fn texts_that_are_no_table_are_refused_with_what_is_wrong() {
     for (text, message) in [
-        ("name = 'a'\n[[area]]\nclass = 'lake'\ntags = ['natural=water']", "\"lake\" is no class"),
+        (
+            "name = 'a'\n[[area]]\nclass = 'lake'\ntags = ['natural=water']",
+            "\"lake\" is not a class",
+        ),
         ("name = 'a'\n[[area]]\nclass = 'water'\ntags = ['natural']", "key=value"),
         ("name = 'a'\narea = []", "lists no tags"),
         ("name = 'a'\ncolour = 'blue'\narea = []", "unknown field"),
